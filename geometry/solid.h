@@ -38,6 +38,12 @@ struct Primitive {
   Vec3 velocity{0, 0, 0};  // m/s, translation of the surface
 };
 
+// What a generator writes on every primitive it makes.
+struct SurfaceLabel {
+  uint32_t material = 0;  // Primitive::material
+  uint32_t wall = 0;      // Primitive::wall
+};
+
 struct Solid {
   std::vector<std::string> walls;  // names; walls[p.wall] is the part a primitive belongs to
   std::vector<Primitive> primitives;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/solid.h"
+#include "kernels/contact_law.h"
 
 namespace scree {
 
@@ -28,7 +29,7 @@ struct MaterialPair {
   double rolling_friction = 0;  // >= 0
 };
 
-enum class RollingModel { none, cdt, epsd2 };
+
 enum class ContactModel { hertz_mindlin };  // Hertz normal force, Mindlin tangential force with history
 enum class Precision { mixed, reference };  // reference: everything in double, scalar; slow, the oracle
 
@@ -75,7 +76,7 @@ struct Mixture {
 
 // Stages run in the order of the file.
 struct FillStage {  // place at once, without overlaps, then the next stage lets them fall
-  std::vector<uint32_t> regions;
+  std::vector<uint32_t> regions;  // filled one after the other, each up to solid_fraction of its free space
   Mixture mixture;
   double mass = 0;           // kg; 0: use count
   uint64_t count = 0;        // 0 and mass 0: as many as fit
@@ -92,8 +93,8 @@ struct PourStage {  // insert from a region by rate until mass or count is reach
   double solid_fraction = 0.3;  // of the region at each insertion
 };
 struct ReadStage {  // particles from a CSV file with a header: x, y, z, radius and optional vx, vy, vz, kind
-  std::string file;
-  uint32_t kind = 0;
+  std::string file;   // full path
+  uint32_t kind = 0;  // of particles whose row names none
 };
 struct SettleStage {  // run until at rest, or for `time`
   double max_time = 0;              // s; fixed length if kinetic_energy_per_particle is 0
@@ -159,15 +160,19 @@ struct Case {
   NeighbourSettings neighbour;
   std::vector<ParticleKind> kinds;
   Solid solid;            // fibres and walls
-  struct Fibres {         // what was generated, for the report; porosity of the union
-    double diameter = 0, porosity = 0, volume = 0;
+  struct Fibres {         // what was generated, for the report
+    double diameter = 0;  // m; 0: no fibres or several diameters
+    double porosity = 0;  // of the union of the fibres in `section`; 0: no fibres or a flat network
+    double volume = 0;    // m3 of the union inside `section`
     uint64_t count = 0;
+    Bounds section{};     // the lattice's cells; without a lattice the bounds of the fibres' axes
   } fibres;
   std::vector<Region> regions;
   std::vector<Stage> stages;
   std::vector<Outlet> outlets;
   std::vector<Meter> meters;
   OutputSettings output;
+  std::string understood;  // the case as TOML, merged, with defaults filled in: see runtime/case_writer.h
 };
 
 }  // namespace scree

@@ -1,0 +1,85 @@
+// One step of one chunk, forces to new records, in one pass over memory.
+#pragma once
+
+#include <cstring>
+
+#include "kernels/pair_pass.h"
+#include "kernels/solid_pass.h"
+
+namespace scree {
+
+// Moves near pairs that have come within `inner` of touching into active blocks.
+template <class L>
+inline void promote_near_pairs(const ChunkTask<typename L::Real>& task) {
+  using F = typename L::F;
+  using D = typename L::D;
+  auto& near = task.contacts->near;
+  const StepSettings& settings = *task.settings;
+  const uint32_t dummy = task.count;
+  size_t kept = 0;
+  for (size_t first = 0; first < near.size(); first += L::width) {
+    uint32_t i[L::width], j[L::width];
+    for (int k = 0; k < L::width; ++k) {
+      const bool real = first + k < near.size();
+      i[k] = real ? near[first + k].i : dummy, j[k] = real ? near[first + k].j : dummy + 1;
+    }
+    const Bodies<L> a = gather_bodies<L>(task.old_particles, i), b = gather_bodies<L>(task.old_particles, j);
+    const Vec<D> d = minimum_image(a.position - b.position, settings.period);
+    const D reach = L::widen(a.radius) + L::widen(b.radius) + D(settings.inner);
+    const unsigned close = L::bits(L::narrow(fma(reach, reach, -dot(d, d))) >= F(0));
+    for (int k = 0; k < L::width && first + k < near.size(); ++k) {
+      if (close >> k & 1u)
+        task.contacts->append(i[k], j[k], dummy);
+      else
+        near[kept++] = {i[k], j[k]};
+    }
+  }
+  near.resize(kept);
+}
+
+// Leapfrog: v(t + dt/2) = v(t - dt/2) + dt a(t), x(t + dt) = x(t) + dt v(t + dt/2). Same positions and half-step
+// velocities as velocity Verlet; the first step of a run kicks by dt/2 only.
+template <class Real>
+inline void integrate(const ChunkTask<Real>& task, ChunkOutcome& outcome) {
+  const StepSettings& s = *task.settings;
+  const Real kick = static_cast<Real>(s.kick);
+  const Vec<Real> gravity_kick{static_cast<Real>(s.gravity[0] * s.kick), static_cast<Real>(s.gravity[1] * s.kick), static_cast<Real>(s.gravity[2] * s.kick)};
+  const Real limit2 = static_cast<Real>(s.speed_limit * s.speed_limit);
+  Real max_speed2 = 0;
+  bool bad = false;
+  for (uint32_t k = task.begin; k < task.end; ++k) {
+    Particle<Real> p = task.old_particles[k];
+    const Real* row = task.rows + 8 * static_cast<size_t>(k - task.begin);
+    const Real linear = kick * p.inverse_mass;
+    const Real angular = linear * (Real(2.5) / (p.radius * p.radius));  // I = 2/5 m R^2
+    p.vx = fma(linear, row[0], p.vx + gravity_kick.x);
+    p.vy = fma(linear, row[1], p.vy + gravity_kick.y);
+    p.vz = fma(linear, row[2], p.vz + gravity_kick.z);
+    p.wx = fma(angular, row[3], p.wx);
+    p.wy = fma(angular, row[4], p.wy);
+    p.wz = fma(angular, row[5], p.wz);
+    p.x = fma(s.dt, static_cast<double>(p.vx), p.x);
+    p.y = fma(s.dt, static_cast<double>(p.vy), p.y);
+    p.z = fma(s.dt, static_cast<double>(p.vz), p.z);
+    const Real speed2 = dot(Vec<Real>{p.vx, p.vy, p.vz}, Vec<Real>{p.vx, p.vy, p.vz});
+    bad |= !(speed2 <= limit2);  // NaN too
+    max_speed2 = max(max_speed2, speed2);
+    task.new_particles[k] = p;
+  }
+  outcome.max_speed = std::sqrt(static_cast<double>(max_speed2));
+  outcome.too_fast = bad;
+}
+
+template <class L, class Traits>
+ChunkOutcome step_chunk(const ChunkTask<typename L::Real>& task) {
+  using Real = typename L::Real;
+  ChunkOutcome outcome;
+  std::memset(task.rows, 0, (task.end - task.begin + 1) * size_t{8} * sizeof(Real));
+  if (task.settings->check_near) promote_near_pairs<L>(task);
+  outcome.max_pair_overlap = pair_pass<L, Traits>(task);
+  outcome.max_solid_overlap = solid_pass<L, Traits>(task);
+  integrate<Real>(task, outcome);
+  return outcome;
+}
+
+}  // namespace scree

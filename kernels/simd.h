@@ -1,0 +1,240 @@
+// The only file that names the SIMD library (Google Highway, static dispatch: a translation unit's compiler flags choose
+// the instruction set, and its types live in a namespace of that set, so several sets link into one program).
+//
+// Why Highway: transposes of 64-byte rows need shuffles, which std::experimental::simd does not have, and exact fused
+// multiply-adds and square roots, which xsimd 8 emulates on some targets. Everything used here is IEEE-exact (no
+// reciprocal estimates), so every instruction set gives the same bits as the scalar lanes.
+//
+// A kernel is templated on a lane set L with
+//   L::width                     contacts worked on at once
+//   L::F, L::D                   `width` floats, `width` doubles (overlaps are formed in D)
+//   L::Real                      the storage type of records and histories
+// and the free functions below. ScalarLanes<Real> has width 1; ScalarLanes<double> is the double reference.
+#pragma once
+
+#define HWY_DISABLE_PCLMUL_AES  // not used here, and not part of x86-64-v3
+#include <hwy/highway.h>
+
+#include <cstdint>
+#include <type_traits>
+
+#include "geometry/vec.h"
+
+namespace scree {
+
+// ---- one lane --------------------------------------------------------------------------------------------------------
+template <class RealType>
+struct ScalarLanes {
+  static constexpr int width = 1;
+  using Real = RealType;
+  using F = RealType;
+  using D = double;
+
+  static F load(const Real* p) { return *p; }
+  static void store(F a, Real* p) { *p = a; }
+  static D load_doubles(const double* p) { return *p; }
+  static D widen(F a) { return static_cast<double>(a); }
+  static F narrow(D a) { return static_cast<Real>(a); }
+  static unsigned bits(bool mask) { return mask ? 1u : 0u; }
+  static bool narrow_mask(bool mask) { return mask; }
+  static bool mask_from_bits(unsigned bits) { return bits & 1u; }
+  static Real max_lane(F a) { return a; }
+
+  // Eight consecutive Reals of each row become eight lane vectors.
+  static void load_rows(const Real* const* rows, F (&out)[8]) {
+    for (int k = 0; k < 8; ++k) out[k] = rows[0][k];
+  }
+  // Four consecutive doubles of each row; the fourth may be raw bits.
+  static void load_double_rows(const double* const* rows, D (&out)[4]) {
+    for (int k = 0; k < 4; ++k) out[k] = rows[0][k];
+  }
+  // rows[k][0..7] += columns, lane by lane in order (rows may coincide).
+  static void add_rows(Real* const* rows, const F (&columns)[8]) {
+    for (int k = 0; k < 8; ++k) rows[0][k] += columns[k];
+  }
+};
+
+// ---- the widest lanes that this translation unit's flags allow --------------------------------------------------------
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+struct NativeLanes;
+
+using FloatTag = hn::ScalableTag<float>;
+using DoubleTag = hn::ScalableTag<double>;
+using FloatVec = hn::Vec<FloatTag>;
+using DoubleVec = hn::Vec<DoubleTag>;
+inline constexpr int kWidth = static_cast<int>(HWY_LANES(float));
+static_assert(kWidth >= 4, "lanes below 128 bits: use ScalarLanes");
+
+struct FMask { hn::Mask<FloatTag> m; };
+struct DMask { hn::Mask<DoubleTag> lo, hi; };
+
+struct F {
+  FloatVec v;
+  F() = default;
+  F(FloatVec a) : v(a) {}
+  template <class N> requires std::is_arithmetic_v<N>
+  explicit F(N a) : v(hn::Set(FloatTag(), static_cast<float>(a))) {}
+};
+struct D {
+  DoubleVec lo, hi;
+  D() = default;
+  D(DoubleVec a, DoubleVec b) : lo(a), hi(b) {}
+  template <class N> requires std::is_arithmetic_v<N>
+  explicit D(N a) : lo(hn::Set(DoubleTag(), static_cast<double>(a))), hi(lo) {}
+};
+
+inline F operator+(F a, F b) { return hn::Add(a.v, b.v); }
+inline F operator-(F a, F b) { return hn::Sub(a.v, b.v); }
+inline F operator*(F a, F b) { return hn::Mul(a.v, b.v); }
+inline F operator/(F a, F b) { return hn::Div(a.v, b.v); }
+inline F operator-(F a) { return hn::Neg(a.v); }
+inline FMask operator<(F a, F b) { return {hn::Lt(a.v, b.v)}; }
+inline FMask operator>(F a, F b) { return {hn::Gt(a.v, b.v)}; }
+inline FMask operator<=(F a, F b) { return {hn::Le(a.v, b.v)}; }
+inline FMask operator>=(F a, F b) { return {hn::Ge(a.v, b.v)}; }
+inline FMask operator==(F a, F b) { return {hn::Eq(a.v, b.v)}; }
+inline FMask operator&(FMask a, FMask b) { return {hn::And(a.m, b.m)}; }
+inline FMask operator|(FMask a, FMask b) { return {hn::Or(a.m, b.m)}; }
+inline FMask operator!(FMask a) { return {hn::Not(a.m)}; }
+inline bool any(FMask a) { return !hn::AllFalse(FloatTag(), a.m); }
+inline F select(FMask m, F yes, F no) { return hn::IfThenElse(m.m, yes.v, no.v); }
+inline F fma(F a, F b, F c) { return hn::MulAdd(a.v, b.v, c.v); }
+inline F sqrt(F a) { return hn::Sqrt(a.v); }
+inline F abs(F a) { return hn::Abs(a.v); }
+inline F min(F a, F b) { return hn::Min(a.v, b.v); }
+inline F max(F a, F b) { return hn::Max(a.v, b.v); }
+
+inline D operator+(D a, D b) { return {hn::Add(a.lo, b.lo), hn::Add(a.hi, b.hi)}; }
+inline D operator-(D a, D b) { return {hn::Sub(a.lo, b.lo), hn::Sub(a.hi, b.hi)}; }
+inline D operator*(D a, D b) { return {hn::Mul(a.lo, b.lo), hn::Mul(a.hi, b.hi)}; }
+inline D operator/(D a, D b) { return {hn::Div(a.lo, b.lo), hn::Div(a.hi, b.hi)}; }
+inline D operator-(D a) { return {hn::Neg(a.lo), hn::Neg(a.hi)}; }
+inline DMask operator<(D a, D b) { return {hn::Lt(a.lo, b.lo), hn::Lt(a.hi, b.hi)}; }
+inline DMask operator>(D a, D b) { return {hn::Gt(a.lo, b.lo), hn::Gt(a.hi, b.hi)}; }
+inline DMask operator<=(D a, D b) { return {hn::Le(a.lo, b.lo), hn::Le(a.hi, b.hi)}; }
+inline DMask operator>=(D a, D b) { return {hn::Ge(a.lo, b.lo), hn::Ge(a.hi, b.hi)}; }
+inline DMask operator==(D a, D b) { return {hn::Eq(a.lo, b.lo), hn::Eq(a.hi, b.hi)}; }
+inline DMask operator&(DMask a, DMask b) { return {hn::And(a.lo, b.lo), hn::And(a.hi, b.hi)}; }
+inline DMask operator|(DMask a, DMask b) { return {hn::Or(a.lo, b.lo), hn::Or(a.hi, b.hi)}; }
+inline DMask operator!(DMask a) { return {hn::Not(a.lo), hn::Not(a.hi)}; }
+inline D select(DMask m, D yes, D no) { return {hn::IfThenElse(m.lo, yes.lo, no.lo), hn::IfThenElse(m.hi, yes.hi, no.hi)}; }
+inline D fma(D a, D b, D c) { return {hn::MulAdd(a.lo, b.lo, c.lo), hn::MulAdd(a.hi, b.hi, c.hi)}; }
+inline D sqrt(D a) { return {hn::Sqrt(a.lo), hn::Sqrt(a.hi)}; }
+inline D abs(D a) { return {hn::Abs(a.lo), hn::Abs(a.hi)}; }
+inline D min(D a, D b) { return {hn::Min(a.lo, b.lo), hn::Min(a.hi, b.hi)}; }
+inline D max(D a, D b) { return {hn::Max(a.lo, b.lo), hn::Max(a.hi, b.hi)}; }
+inline D round(D a) { return {hn::Round(a.lo), hn::Round(a.hi)}; }
+
+struct NativeLanes {
+  static constexpr int width = kWidth;
+  using Real = float;
+  using F = HWY_NAMESPACE::F;
+  using D = HWY_NAMESPACE::D;
+
+  static F load(const float* p) { return hn::LoadU(FloatTag(), p); }
+  static void store(F a, float* p) { hn::StoreU(a.v, FloatTag(), p); }
+  static D load_doubles(const double* p) {
+    return {hn::LoadU(DoubleTag(), p), hn::LoadU(DoubleTag(), p + kWidth / 2)};
+  }
+  static D widen(F a) {
+    const hn::Rebind<float, DoubleTag> half;
+    return {hn::PromoteTo(DoubleTag(), hn::LowerHalf(half, a.v)), hn::PromoteTo(DoubleTag(), hn::UpperHalf(half, a.v))};
+  }
+  static F narrow(D a) {
+    const hn::Rebind<float, DoubleTag> half;
+    return hn::Combine(FloatTag(), hn::DemoteTo(half, a.hi), hn::DemoteTo(half, a.lo));
+  }
+  static unsigned bits(FMask mask) {
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(FloatTag(), mask.m, bytes);
+    return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
+  }
+  static FMask narrow_mask(DMask mask) { return narrow(select(mask, D(1.0), D(0.0))) > F(0.5f); }
+  static FMask mask_from_bits(unsigned bits) {
+    const uint8_t bytes[8] = {static_cast<uint8_t>(bits), static_cast<uint8_t>(bits >> 8)};
+    return {hn::LoadMaskBits(FloatTag(), bytes)};
+  }
+  static float max_lane(F a) { return hn::GetLane(hn::MaxOfLanes(FloatTag(), a.v)); }
+
+  // A transpose in two steps: 128-bit quarters of four rows into one vector per position, then 4 x 4 inside each.
+  static void load_rows(const float* const* rows, F (&out)[8]) {
+    transpose_quad(quad(rows, 0, 0), quad(rows, 1, 0), quad(rows, 2, 0), quad(rows, 3, 0), out);
+    transpose_quad(quad(rows, 0, 4), quad(rows, 1, 4), quad(rows, 2, 4), quad(rows, 3, 4), out + 4);
+  }
+  static void load_double_rows(const double* const* rows, D (&out)[4]) {
+    constexpr int half = kWidth / 2;
+    for (int k = 0; k < 4; k += 2) {
+      const DoubleVec a = pair(rows, 0, k), b = pair(rows, 1, k);
+      const DoubleVec c = pair(rows + half, 0, k), d = pair(rows + half, 1, k);
+      out[k] = {hn::InterleaveLower(DoubleTag(), a, b), hn::InterleaveLower(DoubleTag(), c, d)};
+      out[k + 1] = {hn::InterleaveUpper(DoubleTag(), a, b), hn::InterleaveUpper(DoubleTag(), c, d)};
+    }
+  }
+  static void add_rows(float* const* rows, const F (&columns)[8]) {
+    F low[4], high[4];
+    transpose_quad(columns[0].v, columns[1].v, columns[2].v, columns[3].v, low);
+    transpose_quad(columns[4].v, columns[5].v, columns[6].v, columns[7].v, high);
+    const hn::Full128<float> d4;
+    alignas(64) float a[4][kWidth], b[4][kWidth];
+    if constexpr (kWidth == 8) {
+      // Row order is part of the result: the same as that of the scalar lanes.
+      for (int r = 0; r < 4; ++r) add_row(FloatTag(), rows[r], low[r].v, high[r].v, [](auto d, auto a, auto b) { return hn::ConcatLowerLower(d, b, a); });
+      for (int r = 0; r < 4; ++r) add_row(FloatTag(), rows[4 + r], low[r].v, high[r].v, [](auto d, auto a, auto b) { return hn::ConcatUpperUpper(d, b, a); });
+      return;
+    }
+    for (int r = 0; r < 4; ++r) {
+      hn::Store(low[r].v, FloatTag(), a[r]);
+      hn::Store(high[r].v, FloatTag(), b[r]);
+    }
+    for (int lane = 0; lane < kWidth; ++lane) {
+      float* row = rows[lane];
+      const int from = lane / 4 * 4;
+      hn::StoreU(hn::Add(hn::LoadU(d4, row), hn::Load(d4, a[lane % 4] + from)), d4, row);
+      hn::StoreU(hn::Add(hn::LoadU(d4, row + 4), hn::Load(d4, b[lane % 4] + from)), d4, row + 4);
+    }
+  }
+
+ private:
+  template <class Tag>
+  static void add_row(Tag d, float* row, hn::Vec<Tag> a, hn::Vec<Tag> b, const auto& join) {
+    hn::StoreU(hn::Add(hn::LoadU(d, row), join(d, a, b)), d, row);
+  }
+  // Words offset..offset+3 of rows r, r+4, r+8, ...
+  static FloatVec quad(const float* const* rows, int r, int offset) {
+    return quarters(FloatTag(), hn::Full128<float>(), rows + r, 4, offset);
+  }
+  // Doubles offset, offset+1 of rows r, r+2, r+4, ...
+  static DoubleVec pair(const double* const* rows, int r, int offset) {
+    return quarters(DoubleTag(), hn::Full128<double>(), rows + r, 2, offset);
+  }
+  // A vector of the 128 bits at `offset` in rows 0, stride, 2 stride, ...
+  template <class Tag, class Tag128, class T>
+  static hn::Vec<Tag> quarters(Tag d, Tag128 d128, const T* const* rows, int stride, int offset) {
+    constexpr int count = static_cast<int>(HWY_LANES(T) / (16 / sizeof(T)));
+    const auto at = [&](int k) { return hn::LoadU(d128, rows[k * stride] + offset); };
+    if constexpr (count == 1) {
+      return at(0);
+    } else if constexpr (count == 2) {
+      return hn::Combine(d, at(1), at(0));
+    } else {
+      const hn::Half<Tag> half;
+      return hn::Combine(d, hn::Combine(half, at(3), at(2)), hn::Combine(half, at(1), at(0)));
+    }
+  }
+  static void transpose_quad(FloatVec a, FloatVec b, FloatVec c, FloatVec e, F* out) {
+    const FloatTag d;
+    const DoubleTag dd;
+    const auto ab_low = hn::BitCast(dd, hn::InterleaveLower(d, a, b)), ab_high = hn::BitCast(dd, hn::InterleaveUpper(d, a, b));
+    const auto ce_low = hn::BitCast(dd, hn::InterleaveLower(d, c, e)), ce_high = hn::BitCast(dd, hn::InterleaveUpper(d, c, e));
+    out[0] = hn::BitCast(d, hn::InterleaveLower(dd, ab_low, ce_low));
+    out[1] = hn::BitCast(d, hn::InterleaveUpper(dd, ab_low, ce_low));
+    out[2] = hn::BitCast(d, hn::InterleaveLower(dd, ab_high, ce_high));
+    out[3] = hn::BitCast(d, hn::InterleaveUpper(dd, ab_high, ce_high));
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace scree

@@ -1,0 +1,29 @@
+// Instantiates the kernels of one lane set for every choice; included once per instruction set.
+#pragma once
+
+#include "kernels/chunk_step.h"
+#include "kernels/step_kernels.h"
+
+namespace scree {
+
+template <class L, RollingModel rolling>
+StepKernels<typename L::Real> kernels_for(bool uniform, bool periodic) {
+  const auto step = uniform ? (periodic ? &step_chunk<L, PassTraits<rolling, true, true>> : &step_chunk<L, PassTraits<rolling, true, false>>)
+                            : (periodic ? &step_chunk<L, PassTraits<rolling, false, true>> : &step_chunk<L, PassTraits<rolling, false, false>>);
+  return {step, &search_chunk<L>};
+}
+
+template <class L>
+StepKernels<typename L::Real> kernels_for(const KernelChoice& choice) {
+  switch (choice.rolling) {
+    case RollingModel::none: return kernels_for<L, RollingModel::none>(choice.uniform, choice.periodic);
+    case RollingModel::cdt: return kernels_for<L, RollingModel::cdt>(choice.uniform, choice.periodic);
+    default: return kernels_for<L, RollingModel::epsd2>(choice.uniform, choice.periodic);
+  }
+}
+
+StepKernels<float> native_kernels(const KernelChoice& choice);
+StepKernels<float> scalar_kernels(const KernelChoice& choice);
+StepKernels<double> reference_kernels(const KernelChoice& choice);
+
+}  // namespace scree

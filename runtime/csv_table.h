@@ -1,0 +1,39 @@
+// A CSV file as lines of fields: one header line of column names, '#' comments and empty lines skipped, no quotes.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/case_error.h"
+
+namespace scree {
+
+class CsvTable {
+ public:
+  // Reads the file and its header. Every column must be in `known`; a name twice is refused.
+  CsvTable(const std::string& path, const std::vector<std::string>& known);
+
+  int column(std::string_view name) const;           // -1: not there
+  int require(std::string_view name) const;          // throws if not there
+
+  bool next();                                       // to the next row; throws if its number of fields is wrong
+  double number(int column) const;                   // finite, or throws
+  std::string_view text(int column) const { return fields_[static_cast<size_t>(column)]; }
+  int line() const { return line_; }
+
+  [[noreturn]] void fail(int column, std::string_view problem) const;  // at the field of this row
+
+ private:
+  bool next_line(std::string_view& line);
+  void split(std::string_view line);
+
+  std::string path_, text_;
+  size_t position_ = 0;
+  int line_ = 0, header_line_ = 0;
+  std::string_view row_;
+  std::vector<std::string_view> fields_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace scree

@@ -1,0 +1,98 @@
+// A domain: the particles of a stretch of the Morton curve, their contacts, and the step. Real is the storage precision.
+#pragma once
+
+#include <array>
+
+#include "geometry/solid_index.h"
+#include "kernels/array.h"
+#include "kernels/cell_grid.h"
+#include "kernels/history_table.h"
+#include "kernels/solid_tables.h"
+#include "kernels/step_kernels.h"
+#include "runtime/engine.h"
+
+namespace scree {
+
+template <class Real>
+class Domain final : public Engine {
+ public:
+  Domain(const Case& c, const EngineOptions& options);
+
+  void insert(std::span<const ParticleState> particles) override;
+  void open_walls(const std::vector<uint32_t>& walls) override;
+  void step() override;
+  void set_removal(std::function<bool(const ParticleState&)> leaves) override { leaves_ = std::move(leaves); }
+
+  size_t count() const override { return count_; }
+  double time() const override { return static_cast<double>(counters_.steps) * settings_.dt; }
+  double dt() const override { return settings_.dt; }
+  double max_speed() const override { return max_speed_; }
+  double skin() const override { return skin_; }
+  std::string isa() const override { return isa_; }
+  const EngineCounters& counters() const override { return counters_; }
+  size_t bytes() const override;
+  double sum(const std::function<double(const ParticleState&)>& f) const override;
+  std::vector<ParticleState> particles() const override;
+  uint64_t state_hash() const override;
+  std::vector<TouchingPair> touching_pairs() const override;
+
+ private:
+  uint32_t chunks() const { return (count_ + chunk_size_ - 1) / chunk_size_; }
+  uint32_t chunk_begin(size_t c) const { return static_cast<uint32_t>(c) * chunk_size_; }
+  uint32_t chunk_end(size_t c) const { return std::min(count_, chunk_begin(c) + chunk_size_); }
+  ParticleState state_of(const Particle<Real>& p) const;
+  ParticleState state(size_t k) const { return state_of(now_[k]); }
+  void reserve(size_t count);
+  void place_dummies(Array<Particle<Real>>& particles);
+  void index_solid();
+
+  void rebuild();
+  void choose_skin();
+  void invalidate_lists();
+  void gather_histories();
+  Bounds occupied_bounds() const;
+  void check_and_wrap();
+  void sort_particles();
+  void mark_ranges();
+  void search_pairs();
+  void search_solids();
+
+  void advance_chunks();
+  [[noreturn]] void fail_step(const ChunkOutcome& outcome) const;
+
+  Bounds box_;
+  bool periodic_[3];
+  Solid solid_;  // what is left of the case's after walls were opened
+  std::vector<uint32_t> solid_identity_;  // index in the case's list of each primitive that is left
+  bool brute_force_solid_;
+  double fixed_skin_;
+  uint32_t kinds_;
+  StepSettings settings_{};
+  StepKernels<Real> kernels_;
+  std::string isa_;
+  MaterialTable<Real> materials_;
+  SolidTables<Real> tables_;
+  std::vector<PreparedPrimitive> prepared_;
+  std::unique_ptr<SolidIndex> index_;
+  std::function<bool(const ParticleState&)> leaves_;
+
+  Array<Particle<Real>> now_, next_;
+  uint32_t count_ = 0, chunk_size_ = 1;
+  uint64_t next_id_ = 0;
+  double max_radius_ = 0, min_radius_ = 0;
+  std::vector<ChunkContacts<Real>> contacts_;
+  HistoryTable<Real> history_;
+  CellGrid grid_;
+  std::vector<uint64_t> packed_, packed_scratch_;
+  std::vector<uint32_t> old_index_;
+  std::vector<ChunkOutcome> outcomes_;
+
+  double skin_ = 0, inner_ = 0;
+  double travel_ = 0;       // m, bound on any particle's way since the last rebuild
+  double near_travel_ = 0;  // the same since near pairs were last checked
+  double max_speed_ = 0;
+  bool lists_valid_ = false;
+  EngineCounters counters_;
+};
+
+}  // namespace scree

@@ -1,0 +1,83 @@
+// The engine as the stages see it: particles go in, steps are taken, sums come out. One implementation per storage
+// precision (runtime/domain.h); nothing here depends on it. SI units.
+//
+// A *domain* owns a stretch of the Morton curve. Here it is the whole curve; nothing outside assumes so: ids are global,
+// and sums over particles go through sum(), insertion and removal through insert() and the removal rule.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "runtime/case.h"
+
+namespace scree {
+
+// A particle as the outside sees it. Velocities are half a step behind positions (leapfrog), except before the first step.
+struct ParticleState {
+  Vec3 position, velocity, spin;
+  double radius = 0, mass = 0;
+  uint32_t kind = 0;
+  uint64_t id = 0;  // given by the engine at insertion
+};
+
+// The run cannot go on: what happened, where, and what to change.
+struct RunError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct EngineCounters {
+  uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, removed = 0;
+  double removed_mass = 0;
+  double step_seconds = 0, history_seconds = 0, sort_seconds = 0, pair_search_seconds = 0, solid_search_seconds = 0;
+};
+
+struct EngineOptions {
+  std::string isa;         // empty: the best available
+  bool brute_force_solid = false;  // the oracle's twin of the Embree index
+  double skin = 0;         // m; 0: from speeds and sizes
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  virtual void insert(std::span<const ParticleState> particles) = 0;  // ids are given in order
+  virtual void open_walls(const std::vector<uint32_t>& walls) = 0;    // removes primitives of these parts of the solid
+
+  // One step of the case's dt. Throws RunError when the state is not to be trusted: a particle too fast, NaN, an overlap
+  // beyond the limit, a particle outside the domain.
+  virtual void step() = 0;
+
+  // Particles for which this holds are taken out at the next list rebuild and counted.
+  virtual void set_removal(std::function<bool(const ParticleState&)> leaves) = 0;
+
+  virtual size_t count() const = 0;
+  virtual double time() const = 0;  // s since the run began
+  virtual double dt() const = 0;
+  virtual double max_speed() const = 0;  // m/s, in the last step
+  virtual double skin() const = 0;
+  virtual std::string isa() const = 0;
+  virtual const EngineCounters& counters() const = 0;
+  virtual size_t bytes() const = 0;  // held in arrays now
+
+  // Sum of f over all particles; the same bits for any number of threads.
+  virtual double sum(const std::function<double(const ParticleState&)>& f) const = 0;
+  virtual std::vector<ParticleState> particles() const = 0;  // in storage order
+  virtual uint64_t state_hash() const = 0;  // of ids, positions, velocities, spins; independent of storage order
+
+  // Contacts in the lists that touch now, for tests and averages: (id, id, overlap m).
+  struct TouchingPair {
+    uint64_t i, j;
+    double overlap;
+  };
+  virtual std::vector<TouchingPair> touching_pairs() const = 0;
+};
+
+std::unique_ptr<Engine> make_engine(const Case& c, const EngineOptions& options = {});
+
+}  // namespace scree
