@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-constexpr int kBins = 64;          // each way across the box
+constexpr double kBins = 10000;    // about so many, about square, across the box
 constexpr int kColumns = 1 << 18;  // error about 1/kColumns times the roughness of the projection; see porosity.h
 
 // Coordinates turned cyclically, so that the box stays right-handed, until its longest edge is z.
@@ -33,16 +33,12 @@ void widen(CapsuleColumns::Interval& interval, double centre, double half) {
   interval.end = std::max(interval.end, centre + half);
 }
 
-int bin_of(double offset, double width) { return std::clamp(int(offset / width), 0, kBins - 1); }
-
 }  // namespace
 
-CapsuleColumns::CapsuleColumns(std::span<const Segment> axes, double radius, const Bounds& box)
-    : radius_(radius), bins_(kBins * kBins) {
+CapsuleColumns::CapsuleColumns(std::span<const Segment> axes, double radius, const Bounds& box) : radius_(radius) {
   const int longest = longest_axis(box);
   box_ = {turned(box.min, longest), turned(box.max, longest)};
-  bin_width_x_ = (box_.max.x - box_.min.x) / kBins;
-  bin_width_y_ = (box_.max.y - box_.min.y) / kBins;
+  make_bins();
   for (const Segment& axis : axes) {
     const Vec3 a = turned(axis.a, longest), b = turned(axis.b, longest);
     const double length = norm(b - a);
@@ -51,17 +47,35 @@ CapsuleColumns::CapsuleColumns(std::span<const Segment> axes, double radius, con
   }
 }
 
+void CapsuleColumns::make_bins() {
+  const Vec3 size = box_.max - box_.min;
+  const double width = std::sqrt(size.x * size.y / kBins);
+  bins_x_ = int(std::clamp(size.x / width, 1.0, kBins));
+  bins_y_ = int(std::clamp(size.y / width, 1.0, kBins));
+  bin_width_x_ = size.x / bins_x_;
+  bin_width_y_ = size.y / bins_y_;
+  bins_.resize(size_t(bins_x_) * bins_y_);
+}
+
+int CapsuleColumns::bin_x(double x) const {
+  return int(std::clamp((x - box_.min.x) / bin_width_x_, 0.0, bins_x_ - 1.0));
+}
+
+int CapsuleColumns::bin_y(double y) const {
+  return int(std::clamp((y - box_.min.y) / bin_width_y_, 0.0, bins_y_ - 1.0));
+}
+
 // A bin takes the capsule if the bin's circumscribed circle touches the capsule's shadow.
 void CapsuleColumns::add_to_bins(uint32_t index) {
   const Vec3 a{capsules_[index].a.x, capsules_[index].a.y, 0}, b{capsules_[index].b.x, capsules_[index].b.y, 0};
   const SegmentOf<double> shadow = prepared(Segment{a, b});
   const double reach = radius_ + 0.5001 * std::hypot(bin_width_x_, bin_width_y_);
-  const double left = std::min(a.x, b.x) - reach - box_.min.x, right = std::max(a.x, b.x) + reach - box_.min.x;
-  const double front = std::min(a.y, b.y) - reach - box_.min.y, back = std::max(a.y, b.y) + reach - box_.min.y;
-  for (int j = bin_of(front, bin_width_y_); j <= bin_of(back, bin_width_y_); ++j) {
-    for (int i = bin_of(left, bin_width_x_); i <= bin_of(right, bin_width_x_); ++i) {
+  const int i0 = bin_x(std::min(a.x, b.x) - reach), i1 = bin_x(std::max(a.x, b.x) + reach);
+  const int j0 = bin_y(std::min(a.y, b.y) - reach), j1 = bin_y(std::max(a.y, b.y) + reach);
+  for (int j = j0; j <= j1; ++j) {
+    for (int i = i0; i <= i1; ++i) {
       const Vec3 centre{box_.min.x + (i + 0.5) * bin_width_x_, box_.min.y + (j + 0.5) * bin_width_y_, 0};
-      if (norm(centre - closest_on(shadow, centre)) <= reach) bins_[size_t(j) * kBins + i].push_back(index);
+      if (norm(centre - closest_on(shadow, centre)) <= reach) bin(i, j).push_back(index);
     }
   }
 }
@@ -94,8 +108,7 @@ CapsuleColumns::Interval CapsuleColumns::covered(const Capsule& capsule, double 
 
 double CapsuleColumns::covered_length(double x, double y, std::vector<Interval>& scratch) const {
   scratch.clear();
-  const int i = bin_of(x - box_.min.x, bin_width_x_), j = bin_of(y - box_.min.y, bin_width_y_);
-  for (const uint32_t index : bins_[size_t(j) * kBins + i]) {
+  for (const uint32_t index : bins_[size_t(bin_y(y)) * bins_x_ + bin_x(x)]) {
     const Interval interval = covered(capsules_[index], x, y);
     if (interval.begin < interval.end) scratch.push_back(interval);
   }

@@ -28,13 +28,18 @@ class CapsuleColumns {
     double length;
   };
 
+  void make_bins();
   void add_to_bins(uint32_t capsule);
+  std::vector<uint32_t>& bin(int i, int j) { return bins_[size_t(j) * bins_x_ + i]; }
+  int bin_x(double x) const;
+  int bin_y(double y) const;
   Interval covered(const Capsule& capsule, double x, double y) const;
   double covered_length(double x, double y, std::vector<Interval>& scratch) const;
 
   double radius_;
   Bounds box_;  // turned
   std::vector<Capsule> capsules_;
+  int bins_x_, bins_y_;
   double bin_width_x_, bin_width_y_;
   std::vector<std::vector<uint32_t>> bins_;  // capsules that a column in the bin may meet
 };

@@ -37,7 +37,7 @@ struct Trial {
 // which a thin network's solid fraction is linear.
 template <class Excess>
 double solve_between(Trial low, Trial high, const Excess& excess) {
-  constexpr double kTolerance = 2e-7;  // of the diameter's square: 1e-7 of the diameter
+  constexpr double kTolerance = 1e-6;  // of the diameter's square: the middle is within 2.5e-7 of the diameter
   int side = 0;  // which end the last trial replaced; the end that stays for a second time counts for half
   for (int round = 0; round < 100 && high.diameter2 - low.diameter2 > kTolerance * high.diameter2; ++round) {
     const double weight = high.excess / (high.excess - low.excess);

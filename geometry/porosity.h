@@ -3,8 +3,9 @@
 //
 // The box is pierced by columns along its longest edge. Along a column the union is exact: each capsule is convex, so
 // it covers one interval, and intervals are merged. Across, 2^18 columns of a fixed low-discrepancy sequence are
-// averaged: within 2e-5 of the exact porosity for the Octet lattice, and the same answer on every run. With the columns
-// fixed the porosity falls monotonically with the diameter, so that solving for the diameter is well posed.
+// averaged: measured within 1e-5 of 2^24 columns for the Octet lattice, and within 1e-4 of the circle's area for one
+// fibre along the columns, the roughest case. With the columns fixed, the answer is the same on every run and falls
+// monotonically with the diameter, so that solving for the diameter is well posed.
 #pragma once
 
 #include <span>

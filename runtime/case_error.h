@@ -1,5 +1,5 @@
-// The one error of reading a user's files. what() is complete: "file:line:column: key 'x.y': what is wrong (value), what
-// is allowed with its unit; did you mean 'z'?"
+// The one error of reading a user's files. what() is complete: "file:line:column: key 'x.y': what is wrong (value),
+// what is allowed with its unit; did you mean 'z'?"
 #pragma once
 
 #include <fmt/format.h>

@@ -20,7 +20,8 @@ Bounds read_box(TableReader& t) {
   const Bounds box{t.vec3("min", kPosition), t.vec3("max", kPosition)};
   for (int axis = 0; axis < 3; ++axis) {
     if (along(box.max, axis) > along(box.min, axis)) continue;
-    t.fail("max", fmt::format("{} is not above min = {} along {}, must be greater in x, y and z, m", t.shown("max"), t.shown("min"), kAxes[axis]));
+    t.fail("max", fmt::format("{} is not above min = {} along {}, must be greater in x, y and z, m", t.shown("max"),
+                              t.shown("min"), kAxes[axis]));
   }
   return box;
 }
@@ -64,7 +65,9 @@ double largest_diameter_of(const Case& c) {
 // Without [domain] min and max: a box round everything, with room for two particles and at least 5 % of its size.
 void fit_domain(TableReader& t, Case& c, const Bounds& things) {
   if (!(things.min.x <= things.max.x)) {
-    t.fail("min", "the domain's min and max are missing and cannot be worked out: nothing but planes bounds the case; give both, m");
+    t.fail("min",
+           "the domain's min and max are missing and cannot be worked out: nothing but planes bounds the case; give "
+           "both, m");
   }
   const Vec3 size = things.max - things.min;
   const double margin = std::max(2 * largest_diameter_of(c), 0.05 * std::max({size.x, size.y, size.z}));
@@ -78,10 +81,14 @@ void read_periodic(TableReader& t, Case& c, bool given) {
   const double least = 2 * (largest_diameter_of(c) + skin);
   for (const std::string& name : t.texts("periodic", {})) {
     const uint32_t axis = t.index_of("periodic", name, "axis", {"x", "y", "z"});
-    if (!given) t.fail("periodic", fmt::format("{} needs the domain's size; give domain.min and domain.max, m", t.shown("periodic")));
+    if (!given)
+      t.fail("periodic",
+             fmt::format("{} needs the domain's size; give domain.min and domain.max, m", t.shown("periodic")));
     const double length = along(c.domain.max, static_cast<int>(axis)) - along(c.domain.min, static_cast<int>(axis));
     if (!(length > least)) {
-      t.fail("periodic", fmt::format("the domain is {:.6g} m long along periodic {}, must be more than {:.6g} m: twice the largest diameter and skin", length, name, least));
+      t.fail("periodic", fmt::format("the domain is {:.6g} m long along periodic {}, must be more than {:.6g} m: twice "
+                                     "the largest diameter and skin",
+                                     length, name, least));
     }
     c.periodic[axis] = true;
   }
@@ -92,8 +99,9 @@ void check_regions(TableReader& top, const Case& c) {
   for (size_t i = 0; i < c.regions.size(); ++i) {
     const Bounds b = bounds_of(c.regions[i]);
     if (contains(c.domain, b.min) && contains(c.domain, b.max)) continue;
-    tables[i].fail("shape", fmt::format("region '{}' from {} to {} m is not inside the domain from {} to {} m", c.regions[i].name,
-                                        text_of(b.min), text_of(b.max), text_of(c.domain.min), text_of(c.domain.max)));
+    tables[i].fail(
+        "shape", fmt::format("region '{}' from {} to {} m is not inside the domain from {} to {} m", c.regions[i].name,
+                             text_of(b.min), text_of(b.max), text_of(c.domain.min), text_of(c.domain.max)));
   }
 }
 
@@ -111,8 +119,11 @@ void check_outlets(TableReader& top, const Case& c) {
                                           text_of(c.domain.min), text_of(c.domain.max)));
     }
     if (reach > outlet.remove_beyond) continue;
-    tables[i].fail("remove_beyond", fmt::format("{} m: the domain ends {:.6g} m beyond the outlet, so particles would leave the domain before they "
-                                                "are removed; must be less, or make the domain larger", tables[i].shown("remove_beyond"), reach));
+    tables[i].fail(
+        "remove_beyond",
+        fmt::format("{} m: the domain ends {:.6g} m beyond the outlet, so particles would leave the domain before they "
+                    "are removed; must be less, or make the domain larger",
+                    tables[i].shown("remove_beyond"), reach));
   }
 }
 
@@ -123,7 +134,9 @@ void check_meters(TableReader& top, const Case& c) {
     const auto apart = [&](int axis) {
       return along(m.min, axis) >= along(c.domain.max, axis) || along(m.max, axis) <= along(c.domain.min, axis);
     };
-    if (apart(0) || apart(1) || apart(2)) tables[i].fail("min", fmt::format("meter '{}' lies outside the domain, from {} to {} m", m.name, text_of(c.domain.min), text_of(c.domain.max)));
+    if (apart(0) || apart(1) || apart(2))
+      tables[i].fail("min", fmt::format("meter '{}' lies outside the domain, from {} to {} m", m.name,
+                                        text_of(c.domain.min), text_of(c.domain.max)));
   }
 }
 
@@ -134,7 +147,8 @@ void read_regions(TableReader& top, Case& c) {
   for (TableReader& t : top.tables("region")) {
     Region region;
     region.name = new_name(t, "region", names_of(c.regions));
-    region.shape = t.choice<Shape>("shape", {{"box", Shape::box}, {"cylinder", Shape::cylinder}, {"frustum", Shape::frustum}});
+    region.shape =
+        t.choice<Shape>("shape", {{"box", Shape::box}, {"cylinder", Shape::cylinder}, {"frustum", Shape::frustum}});
     if (region.shape == Shape::box) {
       const Bounds box = read_box(t);
       region.min = box.min;

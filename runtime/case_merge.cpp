@@ -113,7 +113,8 @@ void set_at_path(CaseNode& tree, const std::string& path, CaseNode&& value, cons
   const std::string label = rest.substr(0, next);
   CaseNode* element = find_element(*entry->node.array(), key, label);
   if (!element) fail_no_element(*entry->node.array(), key, label, place);
-  if (next == std::string::npos) throw CaseError(place, fmt::format("key '{}': names a whole {}, add the key to set", path, key));
+  if (next == std::string::npos)
+    throw CaseError(place, fmt::format("key '{}': names a whole {}, add the key to set", path, key));
   set_at_path(*element, rest.substr(next + 1), std::move(value), place);
 }
 

@@ -33,7 +33,8 @@ void read_list(TableReader& t, SizeDistribution& size) {
                                     size.fractions.size(), size.diameters.size()));
   }
   const double sum = std::accumulate(size.fractions.begin(), size.fractions.end(), 0.0);
-  if (std::abs(sum - 1) > 1e-3) t.fail("fractions", fmt::format("{} sums to {:.6g}, must be 1", t.shown("fractions"), sum));
+  if (std::abs(sum - 1) > 1e-3)
+    t.fail("fractions", fmt::format("{} sums to {:.6g}, must be 1", t.shown("fractions"), sum));
   for (double& fraction : size.fractions) fraction /= sum;
 }
 
@@ -44,9 +45,11 @@ void read_truncated(TableReader& t, SizeDistribution& size) {
   size.deviation = t.number("deviation", normal ? positive(10, "m") : positive(3, "(standard deviation of ln d)"));
   size.min = t.number("min", kDiameter);
   size.max = t.number("max", kDiameter);
-  if (size.max < size.min) t.fail("max", fmt::format("{} is below min = {}, must be at least min", t.shown("max"), t.shown("min")));
+  if (size.max < size.min)
+    t.fail("max", fmt::format("{} is below min = {}, must be at least min", t.shown("max"), t.shown("min")));
   if (size.mean < size.min || size.mean > size.max) {
-    t.fail(middle, fmt::format("{} is cut off, must be between min = {} and max = {} m", t.shown(middle), t.shown("min"), t.shown("max")));
+    t.fail(middle, fmt::format("{} is cut off, must be between min = {} and max = {} m", t.shown(middle),
+                               t.shown("min"), t.shown("max")));
   }
 }
 
@@ -64,7 +67,9 @@ void read_output(TableReader t, OutputSettings& output) {
   output.final_vtk = t.flag("final_vtk", output.final_vtk);
   if (t.has("steady_window")) {
     const std::vector<double> window = t.numbers("steady_window", between(0, 1e6, "s"), 2);
-    if (window[1] <= window[0]) t.fail("steady_window", fmt::format("{} ends before it begins, must be [from, to] with from < to, s", t.shown("steady_window")));
+    if (window[1] <= window[0])
+      t.fail("steady_window",
+             fmt::format("{} ends before it begins, must be [from, to] with from < to, s", t.shown("steady_window")));
     output.steady_from = window[0];
     output.steady_to = window[1];
   }
@@ -82,10 +87,12 @@ std::vector<Touching> touching_materials(const Case& c) {
   std::vector<Touching> result;
   for (size_t i = 0; i < c.kinds.size(); ++i) {
     for (size_t j = i; j < c.kinds.size(); ++j) {
-      result.push_back({c.kinds[i].material, c.kinds[j].material, fmt::format("particles '{}' and '{}'", c.kinds[i].name, c.kinds[j].name)});
+      result.push_back({c.kinds[i].material, c.kinds[j].material,
+                        fmt::format("particles '{}' and '{}'", c.kinds[i].name, c.kinds[j].name)});
     }
     for (const Primitive& p : c.solid.primitives) {
-      result.push_back({c.kinds[i].material, p.material, fmt::format("particles '{}' and wall '{}'", c.kinds[i].name, c.solid.walls[p.wall])});
+      result.push_back({c.kinds[i].material, p.material,
+                        fmt::format("particles '{}' and wall '{}'", c.kinds[i].name, c.solid.walls[p.wall])});
     }
   }
   return result;
@@ -106,7 +113,8 @@ void check_pairs_complete(TableReader& top, const Case& c) {
     checked[touching.first][touching.second] = true;
     if (has_pair(c, touching.first, touching.second)) continue;
     const std::string &a = c.materials[touching.first].name, &b = c.materials[touching.second].name;
-    top.fail("pair", fmt::format("the pair of materials '{}' and '{}' is missing, but {} can touch; add [[pair]] materials = [\"{}\", \"{}\"]",
+    top.fail("pair", fmt::format("the pair of materials '{}' and '{}' is missing, but {} can touch; add [[pair]] "
+                                 "materials = [\"{}\", \"{}\"]",
                                  a, b, touching.who, a, b));
   }
 }
@@ -123,7 +131,8 @@ std::string new_name(TableReader& table, const std::string& what, const std::vec
 
 std::string path_beside(const TableReader& table, const std::string& key, const std::string& file) {
   const SourcePlace place = table.place(key);
-  const fs::path folder = place.line > 0 ? fs::path(place.file).parent_path() : fs::path();  // an override: the working folder
+  const fs::path folder =
+      place.line > 0 ? fs::path(place.file).parent_path() : fs::path();  // an override: the working folder
   const fs::path path = fs::absolute(folder / file).lexically_normal();
   std::error_code error;
   if (!fs::is_regular_file(path, error)) table.fail(key, fmt::format("the file \"{}\" does not exist", path.string()));
@@ -135,7 +144,8 @@ void read_settings(TableReader& top, Case& c) {
   c.seed = top.whole("seed", between(0, 9.2e18, ""), uint64_t{1});
   c.gravity = top.vec3("gravity", between(-1e3, 1e3, "m/s2"), c.gravity);
   TableReader contact = top.table("contact");
-  c.contact.model = contact.choice<ContactModel>("law", {{"hertz_mindlin", ContactModel::hertz_mindlin}}, "hertz_mindlin");
+  c.contact.model =
+      contact.choice<ContactModel>("law", {{"hertz_mindlin", ContactModel::hertz_mindlin}}, "hertz_mindlin");
   c.contact.rolling = contact.choice<RollingModel>(
       "rolling", {{"none", RollingModel::none}, {"cdt", RollingModel::cdt}, {"epsd2", RollingModel::epsd2}}, "epsd2");
   c.contact.limit_attraction = contact.flag("limit_attraction", false);
@@ -168,7 +178,8 @@ void read_particles(TableReader& top, Case& c) {
     kind.name = new_name(t, "particle kind", names_of(c.kinds));
     kind.material = t.index("material", "material", names_of(c.materials));
     if (c.materials[kind.material].density == 0) {
-      t.fail("material", fmt::format("material {} has no density, which particles need (10 to 1e5 kg/m3)", t.shown("material")));
+      t.fail("material",
+             fmt::format("material {} has no density, which particles need (10 to 1e5 kg/m3)", t.shown("material")));
     }
     const bool one = t.one_of({"diameter", "distribution"}) == "diameter";
     kind.size = one ? one_diameter(t.number("diameter", kDiameter)) : read_distribution(t.table("distribution"));
@@ -188,8 +199,9 @@ void read_pairs(TableReader& top, Case& c) {
     }
     pair.restitution = t.number("restitution", between(0, 1, ""));
     pair.sliding_friction = t.number("sliding_friction", between(0, 10, ""));
-    pair.rolling_friction = c.contact.rolling == RollingModel::none ? t.number("rolling_friction", between(0, 10, ""), 0)
-                                                                    : t.number("rolling_friction", between(0, 10, ""));
+    pair.rolling_friction = c.contact.rolling == RollingModel::none
+                                ? t.number("rolling_friction", between(0, 10, ""), 0)
+                                : t.number("rolling_friction", between(0, 10, ""));
     t.finish();
     c.pairs.push_back(pair);
   }
@@ -202,12 +214,14 @@ void read_time(TableReader& top, Case& c) {
   c.time.allow_large_step = t.flag("allow_large_step", false);
   const double limit = c.time.allow_large_step ? 10 : 0.5;
   if (t.at_most_one_of({"step", "rayleigh_fraction"}) != "step") {
-    c.time.rayleigh_fraction = t.number("rayleigh_fraction", positive(limit, "Rayleigh times"), c.time.rayleigh_fraction);
+    c.time.rayleigh_fraction =
+        t.number("rayleigh_fraction", positive(limit, "Rayleigh times"), c.time.rayleigh_fraction);
   } else {
     c.time.step = t.number("step", positive(1, "s"));
     if (c.time.step > limit * rayleigh) {
       t.fail("step", fmt::format("{} s is {:.3g} of the smallest Rayleigh time, must be at most {} of it ({:.4g} s); "
-                                 "allow_large_step = true allows more", t.shown("step"), c.time.step / rayleigh, limit, limit * rayleigh));
+                                 "allow_large_step = true allows more",
+                                 t.shown("step"), c.time.step / rayleigh, limit, limit * rayleigh));
     }
   }
   t.finish();

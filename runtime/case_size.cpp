@@ -14,7 +14,8 @@ double sphere_volume(double diameter) { return pi / 6 * diameter * diameter * di
 
 // Number density of diameters, not normalised.
 double number_density(const SizeDistribution& size, double d) {
-  if (size.kind == SizeDistribution::Kind::normal) return std::exp(-0.5 * std::pow((d - size.mean) / size.deviation, 2));
+  if (size.kind == SizeDistribution::Kind::normal)
+    return std::exp(-0.5 * std::pow((d - size.mean) / size.deviation, 2));
   return std::exp(-0.5 * std::pow(std::log(d / size.mean) / size.deviation, 2)) / d;
 }
 

@@ -12,8 +12,8 @@ double largest_diameter(const SizeDistribution& size);   // m
 // distributions; a list gives mass or number fractions).
 double mean_particle_volume(const SizeDistribution& size);
 
-double volume_of(const Region& region);   // m3
-Bounds bounds_of(const Region& region);   // tight
+double volume_of(const Region& region);  // m3
+Bounds bounds_of(const Region& region);  // tight
 
 // Particles of a mixture per kg.
 double particles_per_mass(const Case& c, const Mixture& mixture);

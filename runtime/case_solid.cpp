@@ -50,7 +50,8 @@ void read_lattice(TableReader t, Case& c) {
   if (t.one_of({"fibre_diameter", "porosity"}) == "fibre_diameter") {
     c.fibres.diameter = t.number("fibre_diameter", kFibreDiameter);
     if (c.fibres.diameter >= cell_size) {
-      t.fail("fibre_diameter", fmt::format("{} m must be less than cell_size = {} m", t.shown("fibre_diameter"), cell_size));
+      t.fail("fibre_diameter",
+             fmt::format("{} m must be less than cell_size = {} m", t.shown("fibre_diameter"), cell_size));
     }
   } else {
     const double target = t.number("porosity", {0, 0.9999, "", true});
@@ -85,7 +86,8 @@ std::vector<Fibre> read_fibre_file(const std::string& path) {
     if (diameter < 0) continue;
     fibre.diameter = table.number(diameter);
     if (fibre.diameter < kFibreDiameter.min || fibre.diameter > kFibreDiameter.max) {
-      table.fail(diameter, fmt::format("{} is out of range, must be {}", table.text(diameter), to_string(kFibreDiameter)));
+      table.fail(diameter,
+                 fmt::format("{} is out of range, must be {}", table.text(diameter), to_string(kFibreDiameter)));
     }
   }
   if (fibres.empty()) throw CaseError({path, table.line(), 1}, "the file has no fibres below its header");
@@ -97,7 +99,8 @@ std::vector<Fibre> read_segments(TableReader& t) {
   for (const auto& v : t.rows("segments", kPosition, 6)) {
     fibres.push_back({{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}}, 0});
     if (norm(fibres.back().axis.b - fibres.back().axis.a) > 0) continue;
-    t.fail("segments", fmt::format("segment {} from [{}, {}, {}] to itself has no length, its ends must differ", fibres.size(), v[0], v[1], v[2]));
+    t.fail("segments", fmt::format("segment {} from [{}, {}, {}] to itself has no length, its ends must differ",
+                                   fibres.size(), v[0], v[1], v[2]));
   }
   return fibres;
 }
@@ -113,13 +116,15 @@ void read_fibres(TableReader& t, Case& c) {
     fibres = read_fibre_file(file);
   }
   const bool all_given = std::ranges::all_of(fibres, [](const Fibre& fibre) { return fibre.diameter > 0; });
-  if (all_given && t.has("diameter")) t.fail("diameter", fmt::format("{} contradicts the column 'diameter' of the file, give one of them", t.shown("diameter")));
+  if (all_given && t.has("diameter"))
+    t.fail("diameter",
+           fmt::format("{} contradicts the column 'diameter' of the file, give one of them", t.shown("diameter")));
   const double diameter = all_given ? 0 : t.number("diameter", kFibreDiameter);
   t.finish();
   for (const Fibre& fibre : fibres) {
     add(c, generated(t, "diameter", [&] {
-      return fibre_network(std::span(&fibre.axis, 1), fibre.diameter > 0 ? fibre.diameter : diameter, label);
-    }));
+          return fibre_network(std::span(&fibre.axis, 1), fibre.diameter > 0 ? fibre.diameter : diameter, label);
+        }));
   }
 }
 
@@ -150,7 +155,8 @@ void measure_network(Case& c) {
 Bounds box_of(TableReader& t) {
   const Bounds box{t.vec3("min", kPosition), t.vec3("max", kPosition)};
   if (box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z) return box;
-  t.fail("max", fmt::format("{} is not above min = {}, must be greater in x, y and z, m", t.shown("max"), t.shown("min")));
+  t.fail("max",
+         fmt::format("{} is not above min = {}, must be greater in x, y and z, m", t.shown("max"), t.shown("min")));
 }
 
 Primitives read_quad(TableReader& t, const SurfaceLabel& label) {
@@ -169,7 +175,9 @@ Primitives read_rectangle(TableReader& t, const SurfaceLabel& label) {
   const Vec3 min = t.vec3("min", kPosition), max = t.vec3("max", kPosition), d = max - min;
   const int flat = (d.x == 0) + (d.y == 0) + (d.z == 0);
   if (flat != 1 || d.x < 0 || d.y < 0 || d.z < 0) {
-    t.fail("max", fmt::format("{} with min = {} is no rectangle: they must be equal along one axis and max greater along the other two, m", t.shown("max"), t.shown("min")));
+    t.fail("max", fmt::format("{} with min = {} is no rectangle: they must be equal along one axis and max greater "
+                              "along the other two, m",
+                              t.shown("max"), t.shown("min")));
   }
   if (d.x == 0) return rectangle(min, {0, d.y, 0}, {0, 0, d.z}, label);
   if (d.y == 0) return rectangle(min, {d.x, 0, 0}, {0, 0, d.z}, label);
@@ -223,7 +231,9 @@ Primitives read_disc(TableReader& t, const SurfaceLabel& label) {
 Primitives read_annulus(TableReader& t, const SurfaceLabel& label) {
   const Vec3 centre = t.vec3("centre", kPosition), normal = t.direction("normal", {0, 0, 1});
   const double inner = t.number("inner_radius", kLength), outer = t.number("outer_radius", kLength);
-  if (outer <= inner) t.fail("outer_radius", fmt::format("{} m must be greater than inner_radius = {} m", t.shown("outer_radius"), t.shown("inner_radius")));
+  if (outer <= inner)
+    t.fail("outer_radius", fmt::format("{} m must be greater than inner_radius = {} m", t.shown("outer_radius"),
+                                       t.shown("inner_radius")));
   return generated(t, "outer_radius", [&] { return annulus(centre, normal, inner, outer, label); });
 }
 
@@ -236,9 +246,16 @@ struct PendingPlane {
 
 using ReadWall = Primitives (*)(TableReader&, const SurfaceLabel&);
 const Choices<ReadWall> kWallKinds = {
-    {"plane", nullptr},          {"quad", read_quad},         {"rectangle", read_rectangle}, {"box", read_box_wall},
-    {"channel", read_channel},   {"frustum", read_frustum_wall}, {"cylinder", read_cylinder_wall}, {"cone", read_cone},
-    {"disc", read_disc},         {"annulus", read_annulus},
+    {"plane", nullptr},
+    {"quad", read_quad},
+    {"rectangle", read_rectangle},
+    {"box", read_box_wall},
+    {"channel", read_channel},
+    {"frustum", read_frustum_wall},
+    {"cylinder", read_cylinder_wall},
+    {"cone", read_cone},
+    {"disc", read_disc},
+    {"annulus", read_annulus},
 };
 
 void read_wall(TableReader& t, Case& c, std::vector<PendingPlane>& planes) {
@@ -256,7 +273,8 @@ void read_wall(TableReader& t, Case& c, std::vector<PendingPlane>& planes) {
 }
 
 void add_plane(const PendingPlane& pending, Case& c) {
-  Primitives primitives = generated(pending.table, "point", [&] { return plane(pending.point, pending.normal, c.domain, pending.label); });
+  Primitives primitives =
+      generated(pending.table, "point", [&] { return plane(pending.point, pending.normal, c.domain, pending.label); });
   for (Primitive& p : primitives) p.velocity = pending.velocity;
   add(c, primitives);
 }

@@ -29,7 +29,8 @@ Mixture read_mixture(TableReader& t, const Case& c) {
   Mixture mixture;
   const auto [names, fractions] = t.weights("mixture");
   const double sum = std::accumulate(fractions.begin(), fractions.end(), 0.0);
-  if (std::abs(sum - 1) > 1e-3) t.fail("mixture", fmt::format("the mass fractions {} sum to {:.6g}, must be 1", t.shown("mixture"), sum));
+  if (std::abs(sum - 1) > 1e-3)
+    t.fail("mixture", fmt::format("the mass fractions {} sum to {:.6g}, must be 1", t.shown("mixture"), sum));
   for (size_t i = 0; i < names.size(); ++i) {
     mixture.kinds.push_back(t.index_of("mixture", names[i], "particle kind", kinds));
     mixture.mass_fractions.push_back(fractions[i] / sum);
@@ -43,8 +44,9 @@ void check_fits(const TableReader& t, const std::string& key, const Case& c, con
   for (const uint32_t kind : mixture.kinds) {
     const double largest = largest_diameter(c.kinds[kind].size);
     if (largest <= least) continue;
-    t.fail(key, fmt::format("region '{}' is {:.4g} m wide, too narrow for particles '{}' of {:.4g} m; are all lengths in m?",
-                            c.regions[region].name, least, c.kinds[kind].name, largest));
+    t.fail(key,
+           fmt::format("region '{}' is {:.4g} m wide, too narrow for particles '{}' of {:.4g} m; are all lengths in m?",
+                       c.regions[region].name, least, c.kinds[kind].name, largest));
   }
 }
 
@@ -58,9 +60,11 @@ bool boxes_overlap(const Region& a, const Region& b) {
 void claim_region(const TableReader& t, const std::string& key, const Case& c, uint32_t region, Progress& progress) {
   for (const uint32_t other : progress.filled) {
     if (other != region && !boxes_overlap(c.regions[other], c.regions[region])) continue;
-    t.fail(key, fmt::format("region '{}' {} is filled already and no time passes between: put a settle or drain stage before "
-                            "this one, or choose another region", c.regions[region].name,
-                            other == region ? "" : fmt::format("overlaps region '{}', which", c.regions[other].name)));
+    t.fail(key,
+           fmt::format("region '{}'{} is filled already and no time passes between: put a settle or drain stage before "
+                       "this one, or choose another region",
+                       c.regions[region].name,
+                       other == region ? "" : fmt::format(" overlaps region '{}', which", c.regions[other].name)));
   }
   progress.filled.push_back(region);
 }
@@ -88,7 +92,8 @@ void check_capacity(const TableReader& t, const Case& c, const FillStage& fill) 
   const double needed = solid_volume(c, fill);
   if (needed <= room) return;
   t.fail(fill.mass > 0 ? "mass" : "count",
-         fmt::format("{} does not fit: the particles have {:.4g} m3, the regions hold at most {:.4g} m3 of them at solid_fraction {}",
+         fmt::format("{} does not fit: the particles have {:.4g} m3, the regions hold at most {:.4g} m3 of them at "
+                     "solid_fraction {}",
                      t.shown(fill.mass > 0 ? "mass" : "count"), needed, room, fill.solid_fraction));
 }
 
@@ -133,7 +138,9 @@ StageAction read_read(TableReader& t, const Case& c) {
 }
 
 void require_particles(const TableReader& t, const Progress& progress) {
-  if (!progress.particles) t.fail("kind", fmt::format("{} before there are particles: put a fill, pour or read stage before it", t.shown("kind")));
+  if (!progress.particles)
+    t.fail("kind",
+           fmt::format("{} before there are particles: put a fill, pour or read stage before it", t.shown("kind")));
 }
 
 StageAction read_settle(TableReader& t, Progress& progress) {
@@ -146,7 +153,8 @@ StageAction read_settle(TableReader& t, Progress& progress) {
   settle.kinetic_energy_per_particle = t.number("kinetic_energy_per_particle", positive(1e6, "J"));
   settle.max_time = t.number("max_time", kDuration);
   settle.min_time = t.number("min_time", between(0, 1e6, "s"), 0.0);
-  if (settle.min_time > settle.max_time) t.fail("min_time", fmt::format("{} is longer than max_time = {} s", t.shown("min_time"), t.shown("max_time")));
+  if (settle.min_time > settle.max_time)
+    t.fail("min_time", fmt::format("{} is longer than max_time = {} s", t.shown("min_time"), t.shown("max_time")));
   return settle;
 }
 
@@ -173,7 +181,8 @@ StageAction read_drain(TableReader& t, const Case& c, Progress& progress) {
     t.fail("kind", "\"drain\" never ends, give one or more of: max_time (s), discharged_fraction, no_flow_time (s)");
   }
   for (const char* key : {"discharged_fraction", "no_flow_time"}) {
-    if (t.has(key) && c.outlets.empty()) t.fail(key, fmt::format("{} needs an outlet to count at; add [[outlet]]", t.shown(key)));
+    if (t.has(key) && c.outlets.empty())
+      t.fail(key, fmt::format("{} needs an outlet to count at; add [[outlet]]", t.shown(key)));
   }
   return drain;
 }
@@ -190,12 +199,18 @@ enum class Kind { fill, pour, read, settle, open, drain };
 
 StageAction read_action(Kind kind, TableReader& t, const Case& c, Progress& progress) {
   switch (kind) {
-    case Kind::fill: return read_fill(t, c, progress);
-    case Kind::pour: return read_pour(t, c, progress);
-    case Kind::read: return read_read(t, c);
-    case Kind::settle: return read_settle(t, progress);
-    case Kind::open: return read_open(t, c, progress);
-    case Kind::drain: return read_drain(t, c, progress);
+    case Kind::fill:
+      return read_fill(t, c, progress);
+    case Kind::pour:
+      return read_pour(t, c, progress);
+    case Kind::read:
+      return read_read(t, c);
+    case Kind::settle:
+      return read_settle(t, progress);
+    case Kind::open:
+      return read_open(t, c, progress);
+    case Kind::drain:
+      return read_drain(t, c, progress);
   }
   throw std::logic_error("no such stage");
 }
@@ -207,8 +222,12 @@ void read_stages(TableReader& top, Case& c) {
   if (tables.empty()) top.one_of({"stage"});
   Progress progress;
   for (TableReader& t : tables) {
-    const Kind kind = t.choice<Kind>("kind", {{"fill", Kind::fill}, {"pour", Kind::pour}, {"read", Kind::read},
-                                              {"settle", Kind::settle}, {"open", Kind::open}, {"drain", Kind::drain}});
+    const Kind kind = t.choice<Kind>("kind", {{"fill", Kind::fill},
+                                              {"pour", Kind::pour},
+                                              {"read", Kind::read},
+                                              {"settle", Kind::settle},
+                                              {"open", Kind::open},
+                                              {"drain", Kind::drain}});
     Stage stage;
     stage.name = t.name("name", t.text("kind"));
     if (std::ranges::any_of(c.stages, [&](const Stage& other) { return other.name == stage.name; })) {

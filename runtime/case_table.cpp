@@ -7,15 +7,11 @@
 namespace scree {
 namespace {
 
-std::string shortened(std::string text) {
-  return text.size() <= 80 ? text : text.substr(0, 77) + "...";
-}
+std::string shortened(std::string text) { return text.size() <= 80 ? text : text.substr(0, 77) + "..."; }
 
 CaseNode node_of(double value) { return {value, {}, {}}; }
 CaseNode node_of(const std::string& value) { return {value, {}, {}}; }
-CaseNode node_of(const Vec3& v) {
-  return {CaseNode::Array{node_of(v.x), node_of(v.y), node_of(v.z)}, {}, {}};
-}
+CaseNode node_of(const Vec3& v) { return {CaseNode::Array{node_of(v.x), node_of(v.y), node_of(v.z)}, {}, {}}; }
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
   const auto near = nearest_word(word, known);
@@ -27,11 +23,12 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 std::string to_string(const Range& range) {
   const std::string unit = *range.unit ? fmt::format(" {}", range.unit) : "";
   if (range.max > 1e100) {
-    return range.min < -1e100 ? fmt::format("any number{}", unit)
-                              : fmt::format("{} {}{}", range.above_min ? "greater than" : "at least", range.min, unit);
+    return range.min < -1e100
+               ? fmt::format("any number{}", unit)
+               : fmt::format("{} {:g}{}", range.above_min ? "greater than" : "at least", range.min, unit);
   }
-  if (range.above_min) return fmt::format("greater than {} and at most {}{}", range.min, range.max, unit);
-  return fmt::format("between {} and {}{}", range.min, range.max, unit);
+  if (range.above_min) return fmt::format("greater than {:g} and at most {:g}{}", range.min, range.max, unit);
+  return fmt::format("between {:g} and {:g}{}", range.min, range.max, unit);
 }
 
 SourcePlace TableReader::place(const std::string& key) const {
@@ -62,8 +59,8 @@ void TableReader::fail_unknown(const std::string& key, const std::string& word, 
 
 void TableReader::fail_unknown_key(const CaseEntry& entry) const {
   const std::string value = shortened(inline_toml(entry.node));
-  throw CaseError(entry.place, fmt::format("key '{}': unknown key (value {}), known here: {}{}", full_key(entry.key), value,
-                                           fmt::join(known_, ", "), did_you_mean(entry.key, known_)));
+  throw CaseError(entry.place, fmt::format("key '{}': unknown key (value {}), known here: {}{}", full_key(entry.key),
+                                           value, fmt::join(known_, ", "), did_you_mean(entry.key, known_)));
 }
 
 CaseNode* TableReader::find(const std::string& key) {
@@ -79,7 +76,7 @@ CaseNode& TableReader::require(const std::string& key) {
   for (const CaseEntry& entry : *node_->table()) {  // perhaps it is there, but misspelt
     if (!entry.used && nearest_word(entry.key, {key})) fail_unknown_key(entry);
   }
-  throw CaseError(node_->place, fmt::format("key '{}': is missing and has no default", full_key(key)));
+  throw CaseError(node_->place, fmt::format("key '{}': is missing, and has no default", full_key(key)));
 }
 
 void TableReader::set_default(const std::string& key, CaseNode&& value, const std::string& comment) {
@@ -92,7 +89,8 @@ double TableReader::to_number(const std::string& key, const CaseNode& node, cons
   const auto* real = std::get_if<double>(&node.value);
   if (!integer && !real) fail_type(key, node, fmt::format("a number, {}", to_string(range)));
   const double value = real ? *real : static_cast<double>(*integer);
-  const bool inside = std::isfinite(value) && value <= range.max && (range.above_min ? value > range.min : value >= range.min);
+  const bool inside =
+      std::isfinite(value) && value <= range.max && (range.above_min ? value > range.min : value >= range.min);
   if (inside) return value;
   throw CaseError(node.place, fmt::format("key '{}': {} is out of range, must be {}", full_key(key), inline_toml(node),
                                           to_string(range)));
@@ -143,7 +141,8 @@ std::string TableReader::text(const std::string& key, const std::string& fallbac
 
 std::string TableReader::name(const std::string& key) {
   const std::string word = text(key);
-  const bool plain = std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+  const bool plain =
+      std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
   if (!plain) fail(key, fmt::format("'{}' is not a name, must be made of letters, digits, _ and -", word));
   return word;
 }
@@ -301,7 +300,9 @@ std::string TableReader::one_of(const std::vector<std::string>& keys) {
   for (const CaseEntry& entry : *node_->table()) {
     if (!entry.used && nearest_word(entry.key, keys)) fail_unknown_key(entry);
   }
-  throw CaseError(node_->place, fmt::format("key '{}': is missing, give one of: {}", full_key(keys[0]), fmt::join(keys, ", ")));
+  const std::string advice =
+      keys.size() == 1 ? "and has no default" : fmt::format("give one of: {}", fmt::join(keys, ", "));
+  throw CaseError(node_->place, fmt::format("key '{}': is missing, {}", full_key(keys[0]), advice));
 }
 
 std::string TableReader::at_most_one_of(const std::vector<std::string>& keys) {
@@ -309,7 +310,8 @@ std::string TableReader::at_most_one_of(const std::vector<std::string>& keys) {
   for (const std::string& key : keys) {
     if (!has(key)) continue;
     if (!given.empty()) {
-      fail(key, fmt::format("{} contradicts '{}' = {}, give only one of: {}", shown(key), given, shown(given), fmt::join(keys, ", ")));
+      fail(key, fmt::format("{} contradicts '{}' = {}, give only one of: {}", shown(key), given, shown(given),
+                            fmt::join(keys, ", ")));
     }
     given = key;
   }

@@ -27,7 +27,8 @@ std::vector<CsvParticle> read_particles_csv(const std::string& path) {
     p.position = {table.number(x), table.number(y), table.number(z)};
     p.radius = table.number(radius);
     if (!(p.radius > 0 && p.radius <= kLargestRadius)) {
-      table.fail(radius, fmt::format("{} is out of range, must be greater than 0 and at most {} m", table.text(radius), kLargestRadius));
+      table.fail(radius, fmt::format("{} is out of range, must be greater than 0 and at most {} m", table.text(radius),
+                                     kLargestRadius));
     }
     if (moving) p.velocity = {table.number(vx), table.number(vy), table.number(vz)};
     if (kind >= 0) p.kind = table.text(kind);

@@ -14,11 +14,11 @@
 namespace scree {
 
 struct CsvParticle {
-  Vec3 position;               // m
-  double radius;               // m
-  Vec3 velocity{0, 0, 0};      // m/s
-  std::string kind;            // empty: the file does not say
-  int line = 0;                // where it stands
+  Vec3 position;           // m
+  double radius;           // m
+  Vec3 velocity{0, 0, 0};  // m/s
+  std::string kind;        // empty: the file does not say
+  int line = 0;            // where it stands
 };
 
 // Throws CaseError with file, line and column.

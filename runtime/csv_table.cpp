@@ -21,7 +21,8 @@ std::string_view trimmed(std::string_view text) {
 std::string read_whole(const std::string& path) {
   std::error_code error;
   std::ifstream stream(path, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(path, error)) throw CaseError({path, 0, 0}, "the file cannot be read");
+  if (!stream || !std::filesystem::is_regular_file(path, error))
+    throw CaseError({path, 0, 0}, "the file cannot be read");
   std::ostringstream text;
   text << stream.rdbuf();
   return std::move(text).str();
@@ -29,8 +30,11 @@ std::string read_whole(const std::string& path) {
 
 }  // namespace
 
-CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& known) : path_(path), text_(read_whole(path)) {
-  if (!next_line(row_)) throw CaseError({path_, 1, 1}, fmt::format("the file is empty, must begin with a line of column names ({})", fmt::join(known, ", ")));
+CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& known)
+    : path_(path), text_(read_whole(path)) {
+  if (!next_line(row_))
+    throw CaseError({path_, 1, 1}, fmt::format("the file is empty, must begin with a line of column names ({})",
+                                               fmt::join(known, ", ")));
   header_line_ = line_;
   split(row_);
   for (const std::string_view field : fields_) {
@@ -39,7 +43,8 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& know
     if (std::ranges::find(names_, name) != names_.end()) fail(column, fmt::format("column '{}' is there twice", name));
     if (std::ranges::find(known, name) == known.end()) {
       const auto near = nearest_word(name, known);
-      fail(column, fmt::format("unknown column '{}', known: {}{}", name, fmt::join(known, ", "), near ? fmt::format("; did you mean '{}'?", *near) : ""));
+      fail(column, fmt::format("unknown column '{}', known: {}{}", name, fmt::join(known, ", "),
+                               near ? fmt::format("; did you mean '{}'?", *near) : ""));
     }
     names_.push_back(name);
   }
@@ -52,7 +57,9 @@ int CsvTable::column(std::string_view name) const {
 
 int CsvTable::require(std::string_view name) const {
   const int found = column(name);
-  if (found < 0) throw CaseError({path_, header_line_, 1}, fmt::format("column '{}' is missing, there are: {}", name, fmt::join(names_, ", ")));
+  if (found < 0)
+    throw CaseError({path_, header_line_, 1},
+                    fmt::format("column '{}' is missing, there are: {}", name, fmt::join(names_, ", ")));
   return found;
 }
 
@@ -60,7 +67,8 @@ bool CsvTable::next() {
   if (!next_line(row_)) return false;
   split(row_);
   if (fields_.size() != names_.size()) {
-    throw CaseError({path_, line_, 1}, fmt::format("the line has {} fields, must be {} like the header: {}", fields_.size(), names_.size(), fmt::join(names_, ", ")));
+    throw CaseError({path_, line_, 1}, fmt::format("the line has {} fields, must be {} like the header: {}",
+                                                   fields_.size(), names_.size(), fmt::join(names_, ", ")));
   }
   return true;
 }
@@ -79,7 +87,8 @@ double CsvTable::number(int column) const {
 void CsvTable::fail(int column, std::string_view problem) const {
   const std::string_view field = text(column);
   const int offset = static_cast<int>(field.data() - row_.data());
-  const std::string name = column < static_cast<int>(names_.size()) ? fmt::format("column '{}': ", names_[static_cast<size_t>(column)]) : "";
+  const std::string name =
+      column < static_cast<int>(names_.size()) ? fmt::format("column '{}': ", names_[static_cast<size_t>(column)]) : "";
   throw CaseError({path_, line_, offset + 1}, name + std::string(problem));
 }
 

@@ -14,11 +14,11 @@ class CsvTable {
   // Reads the file and its header. Every column must be in `known`; a name twice is refused.
   CsvTable(const std::string& path, const std::vector<std::string>& known);
 
-  int column(std::string_view name) const;           // -1: not there
-  int require(std::string_view name) const;          // throws if not there
+  int column(std::string_view name) const;   // -1: not there
+  int require(std::string_view name) const;  // throws if not there
 
-  bool next();                                       // to the next row; throws if its number of fields is wrong
-  double number(int column) const;                   // finite, or throws
+  bool next();                      // to the next row; throws if its number of fields is wrong
+  double number(int column) const;  // finite, or throws
   std::string_view text(int column) const { return fields_[static_cast<size_t>(column)]; }
   int line() const { return line_; }
 

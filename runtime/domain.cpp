@@ -99,6 +99,7 @@ void Domain<Real>::insert(std::span<const ParticleState> particles) {
   if (count_ + particles.size() > 0xfffffff0u) throw RunError("more than 4 billion particles in one domain");
   invalidate_lists();
   reserve(count_ + particles.size());
+  counters_.inserted += particles.size();
   for (const ParticleState& s : particles) {
     Particle<Real> p;
     p.x = s.position.x, p.y = s.position.y, p.z = s.position.z;
@@ -202,7 +203,7 @@ void Domain<Real>::check_and_wrap() {
         if (periodic_[a]) *x[a] -= settings_.period[a] * std::floor((*x[a] - low[a]) / settings_.period[a]);
         else outside |= !(*x[a] >= low[a] && *x[a] <= high[a]);
       }
-      if (outside && !(leaves_ && leaves_(state_of(p)))) lost.store(std::min(lost.load(), k));
+      if (outside && !(leaves_ && leaves_(state_of(p)) >= 0)) lost.store(std::min(lost.load(), k));
     }
   });
   if (lost < count_) {
@@ -232,17 +233,27 @@ Bounds Domain<Real>::occupied_bounds() const {
   return all;
 }
 
+// Counts the particles that the removal rule takes out; returns their marks.
+template <class Real>
+std::vector<uint8_t> Domain<Real>::take_out_leavers() {
+  if (!leaves_) return {};
+  std::vector<int> where(count_);
+  parallel_for((count_ + kChunk - 1) / kChunk, [&](size_t c) {
+    for (size_t k = c * kChunk; k < std::min<size_t>(count_, (c + 1) * kChunk); ++k) where[k] = leaves_(state(k));
+  });
+  std::vector<uint8_t> gone(count_);
+  for (size_t k = 0; k < count_; ++k) {
+    if (where[k] < 0) continue;
+    gone[k] = 1, ++counters_.removed;
+    if (counters_.removed_mass.size() <= static_cast<size_t>(where[k])) counters_.removed_mass.resize(where[k] + 1, 0.0);
+    counters_.removed_mass[where[k]] += state(k).mass;
+  }
+  return gone;
+}
+
 template <class Real>
 void Domain<Real>::sort_particles() {
-  std::vector<uint8_t> gone;
-  if (leaves_) {
-    gone.resize(count_);
-    parallel_for((count_ + kChunk - 1) / kChunk, [&](size_t c) {
-      for (size_t k = c * kChunk; k < std::min<size_t>(count_, (c + 1) * kChunk); ++k) gone[k] = leaves_(state(k));
-    });
-    for (size_t k = 0; k < count_; ++k)
-      if (gone[k]) ++counters_.removed, counters_.removed_mass += state(k).mass;
-  }
+  const std::vector<uint8_t> gone = take_out_leavers();
   grid_.lay(occupied_bounds(), settings_.period, 2 * max_radius_ + skin_, std::max<size_t>(4096, size_t{4} * count_));
 
   packed_.resize(count_);

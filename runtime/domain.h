@@ -21,7 +21,7 @@ class Domain final : public Engine {
   void insert(std::span<const ParticleState> particles) override;
   void open_walls(const std::vector<uint32_t>& walls) override;
   void step() override;
-  void set_removal(std::function<bool(const ParticleState&)> leaves) override { leaves_ = std::move(leaves); }
+  void set_removal(Removal leaves) override { leaves_ = std::move(leaves); }
 
   size_t count() const override { return count_; }
   double time() const override { return static_cast<double>(counters_.steps) * settings_.dt; }
@@ -52,6 +52,7 @@ class Domain final : public Engine {
   void gather_histories();
   Bounds occupied_bounds() const;
   void check_and_wrap();
+  std::vector<uint8_t> take_out_leavers();
   void sort_particles();
   void mark_ranges();
   void search_pairs();
@@ -74,7 +75,7 @@ class Domain final : public Engine {
   SolidTables<Real> tables_;
   std::vector<PreparedPrimitive> prepared_;
   std::unique_ptr<SolidIndex> index_;
-  std::function<bool(const ParticleState&)> leaves_;
+  Removal leaves_;
 
   Array<Particle<Real>> now_, next_;
   uint32_t count_ = 0, chunk_size_ = 1;

@@ -31,8 +31,8 @@ struct RunError : std::runtime_error {
 };
 
 struct EngineCounters {
-  uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, removed = 0;
-  double removed_mass = 0;
+  uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, inserted = 0, removed = 0;
+  std::vector<double> removed_mass;  // kg, by what the removal rule said
   double step_seconds = 0, history_seconds = 0, sort_seconds = 0, pair_search_seconds = 0, solid_search_seconds = 0;
 };
 
@@ -53,8 +53,9 @@ class Engine {
   // beyond the limit, a particle outside the domain.
   virtual void step() = 0;
 
-  // Particles for which this holds are taken out at the next list rebuild and counted.
-  virtual void set_removal(std::function<bool(const ParticleState&)> leaves) = 0;
+  // A particle for which this gives k >= 0 is taken out at the next list rebuild and counted in removed_mass[k].
+  using Removal = std::function<int(const ParticleState&)>;
+  virtual void set_removal(Removal leaves) = 0;
 
   virtual size_t count() const = 0;
   virtual double time() const = 0;  // s since the run began

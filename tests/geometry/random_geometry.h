@@ -58,6 +58,10 @@ class RandomGeometry {
 // Points of a skeleton for parameters s, t in [0, 1], written without the code under test.
 inline Vec3 point_of(const Segment& g, double s, double) { return (1 - s) * g.a + s * g.b; }
 inline Vec3 point_of(const Quad& g, double s, double t) {
+  if (norm(g.corners[3] - g.corners[2]) == 0) {  // a triangle: the unit square folded along its diagonal
+    if (s + t > 1) s = 1 - s, t = 1 - t;
+    return g.corners[0] + s * (g.corners[1] - g.corners[0]) + t * (g.corners[2] - g.corners[0]);
+  }
   return (1 - t) * ((1 - s) * g.corners[0] + s * g.corners[1]) + t * ((1 - s) * g.corners[3] + s * g.corners[2]);
 }
 inline Vec3 point_of(const Revolution& g, double s, double t) {

@@ -1,0 +1,141 @@
+#include "kernels/packing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/bounds.h"
+#include "kernels/cell_grid.h"
+#include "kernels/parallel.h"
+#include "kernels/radix_sort.h"
+
+namespace scree {
+
+namespace {
+
+constexpr double kTargetGap = 5e-3;  // of the radii: pushed this much further apart than touching, so that the end is reached
+constexpr double kPush = 0.55;       // of an overlap, for each of the two spheres: half, and a little over-relaxation
+constexpr double kListGap = 0.15;    // of the largest diameter: neighbours kept in the lists
+constexpr size_t kPiece = 1024;
+
+class Packing {
+ public:
+  Packing(std::span<PackedSphere> spheres, std::span<const PackedSphere> fixed, const Confine& confine)
+      : moving_(spheres.size()), confine_(confine), out_(spheres) {
+    all_.assign(spheres.begin(), spheres.end());
+    all_.insert(all_.end(), fixed.begin(), fixed.end());
+    for (const PackedSphere& s : all_) max_radius_ = std::max(max_radius_, s.radius);
+    next_.resize(moving_);
+  }
+
+  PackingOutcome run(int max_iterations) {
+    PackingOutcome outcome;
+    find_neighbours();
+    for (; outcome.iterations < max_iterations; ++outcome.iterations) {
+      const Sweep s = sweep();
+      outcome.worst_overlap = s.worst_overlap;
+      outcome.confined = s.worst_outside <= 0;
+      if (s.worst_overlap <= 0 && outcome.confined) break;
+      for (size_t k = 0; k < moving_; ++k) all_[k].position = next_[k];
+      travel_ += s.longest_way;
+      if (2 * travel_ > kListGap * max_radius_) find_neighbours();
+    }
+    for (size_t k = 0; k < moving_; ++k) out_[k] = all_[k];
+    return outcome;
+  }
+
+ private:
+  struct Sweep {
+    double worst_overlap = 0, worst_outside = 0, longest_way = 0;
+  };
+
+  void find_neighbours() {
+    Bounds bounds = empty_bounds();
+    for (const PackedSphere& s : all_) bounds = united(bounds, {s.position, s.position});
+    const double none[3] = {0, 0, 0};
+    const double reach = 2 * max_radius_ * (1 + kTargetGap) + kListGap * max_radius_;
+    grid_.lay(bounds, none, reach, std::max<size_t>(4096, 4 * all_.size()));
+    packed_.resize(all_.size());
+    for (size_t k = 0; k < all_.size(); ++k) packed_[k] = uint64_t{grid_.morton(grid_.cell_of(all_[k].position))} << 32 | k;
+    radix_sort(packed_, scratch_, grid_.morton_bits());
+    for (size_t k = 0; k < packed_.size(); ++k) {
+      CellGrid::Range& range = grid_.ranges[grid_.linear(grid_.cell_of(all_[packed_[k] & 0xffffffffu].position))];
+      if (range.end == 0) range.begin = static_cast<uint32_t>(k);
+      range.end = static_cast<uint32_t>(k + 1);
+    }
+    neighbours_.resize(moving_);
+    parallel_for((moving_ + kPiece - 1) / kPiece, [&](size_t piece) {
+      for (size_t k = piece * kPiece; k < std::min(moving_, (piece + 1) * kPiece); ++k) list_neighbours(k);
+    });
+    travel_ = 0;
+  }
+
+  void list_neighbours(size_t k) {
+    neighbours_[k].clear();
+    const auto cell = grid_.cell_of(all_[k].position);
+    for (int o = 0; o < 27; ++o) {
+      std::array<uint32_t, 3> other;
+      Vec3 shift;
+      if (!grid_.neighbour(cell, {o % 3 - 1, o / 3 % 3 - 1, o / 9 - 1}, other, shift)) continue;
+      const CellGrid::Range range = grid_.ranges[grid_.linear(other)];
+      for (uint32_t r = range.begin; r < range.end; ++r) {
+        const uint32_t j = static_cast<uint32_t>(packed_[r]);
+        const double reach = (all_[k].radius + all_[j].radius) * (1 + kTargetGap) + kListGap * max_radius_;
+        const Vec3 d = all_[k].position - all_[j].position;
+        if (j != k && dot(d, d) <= reach * reach) neighbours_[k].push_back(j);
+      }
+    }
+  }
+
+  Sweep sweep() {
+    std::vector<Sweep> partial((moving_ + kPiece - 1) / kPiece);
+    parallel_for(partial.size(), [&](size_t piece) {
+      for (size_t k = piece * kPiece; k < std::min(moving_, (piece + 1) * kPiece); ++k) relax(k, partial[piece]);
+    });
+    Sweep all;
+    for (const Sweep& s : partial) {
+      all.worst_overlap = std::max(all.worst_overlap, s.worst_overlap);
+      all.worst_outside = std::max(all.worst_outside, s.worst_outside);
+      all.longest_way = std::max(all.longest_way, s.longest_way);
+    }
+    return all;
+  }
+
+  void relax(size_t k, Sweep& s) {
+    const PackedSphere& a = all_[k];
+    Vec3 push{0, 0, 0};
+    for (const uint32_t j : neighbours_[k]) {
+      const PackedSphere& b = all_[j];
+      const Vec3 d = a.position - b.position;
+      const double r = norm(d), sum = a.radius + b.radius, overlap = sum * (1 + kTargetGap) - r;
+      if (overlap <= 0) continue;
+      s.worst_overlap = std::max(s.worst_overlap, (sum - r) / std::min(a.radius, b.radius));
+      const Vec3 n = r > 0 ? (1 / r) * d : Vec3{k < j ? 1.0 : -1.0, 0, 0};
+      push += (j < moving_ ? kPush : 2 * kPush) * overlap * n;
+    }
+    const Vec3 allowed_now = confine_(a.position, a.radius);
+    s.worst_outside = std::max(s.worst_outside, norm(allowed_now - a.position) - 1e-9 * a.radius);
+    const double length = norm(push), most = 0.5 * a.radius;
+    if (length > most) push = (most / length) * push;
+    next_[k] = confine_(a.position + push, a.radius);
+    s.longest_way = std::max(s.longest_way, norm(next_[k] - a.position));
+  }
+
+  size_t moving_;
+  const Confine& confine_;
+  std::span<PackedSphere> out_;
+  std::vector<PackedSphere> all_;
+  std::vector<Vec3> next_;
+  std::vector<std::vector<uint32_t>> neighbours_;
+  CellGrid grid_;
+  std::vector<uint64_t> packed_, scratch_;
+  double max_radius_ = 0, travel_ = 0;
+};
+
+}  // namespace
+
+PackingOutcome push_apart(std::span<PackedSphere> spheres, std::span<const PackedSphere> fixed, const Confine& confine,
+                          int max_iterations) {
+  return Packing(spheres, fixed, confine).run(max_iterations);
+}
+
+}  // namespace scree

@@ -1,0 +1,80 @@
+#include "runtime/mass_flow.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+
+namespace {
+
+constexpr int kBins = 40;                 // of the stretch that is searched
+constexpr int kFewestBins = kBins / 5;
+constexpr double kSteadyTolerance = 0.08;  // of the mean, between the window's thirds
+constexpr int kErrorBins = 8;             // independent stretches for the standard error
+
+double interpolate(const std::vector<FlowSample>& samples, double t) {
+  const auto after = std::lower_bound(samples.begin(), samples.end(), t, [](const FlowSample& s, double time) { return s.time < time; });
+  if (after == samples.begin()) return samples.front().total();
+  if (after == samples.end()) return samples.back().total();
+  const auto before = after - 1;
+  const double f = (t - before->time) / (after->time - before->time);
+  return before->total() + f * (after->total() - before->total());
+}
+
+double rate_between(const std::vector<FlowSample>& samples, double a, double b) {
+  return (interpolate(samples, b) - interpolate(samples, a)) / (b - a);
+}
+
+bool is_steady(const std::vector<FlowSample>& samples, double a, double b) {
+  const double mean = rate_between(samples, a, b), third = (b - a) / 3;
+  if (mean <= 0) return false;
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(rate_between(samples, a + k * third, a + (k + 1) * third) - mean) > kSteadyTolerance * mean) return false;
+  return true;
+}
+
+}  // namespace
+
+bool beyond(const Outlet& outlet, const ParticleState& p, double distance) {
+  return dot(p.position - outlet.point, outlet.direction) > distance;
+}
+
+double FlowSample::total() const {
+  double sum = 0;
+  for (double d : discharged) sum += d;
+  return sum;
+}
+
+std::optional<SteadyFlow> steady_flow_in(const std::vector<FlowSample>& samples, double from, double to) {
+  if (samples.size() < 2) return std::nullopt;
+  from = std::max(from, samples.front().time), to = std::min(to, samples.back().time);
+  if (!(to > from)) return std::nullopt;
+  SteadyFlow s{rate_between(samples, from, to), 0, from, to, kErrorBins};
+  double sum2 = 0;
+  for (int k = 0; k < kErrorBins; ++k) {
+    const double width = (to - from) / kErrorBins;
+    const double d = rate_between(samples, from + k * width, from + (k + 1) * width) - s.rate;
+    sum2 += d * d;
+  }
+  s.standard_error = std::sqrt(sum2 / (kErrorBins - 1) / kErrorBins);
+  return s;
+}
+
+std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& samples, double from, double to) {
+  if (samples.size() < kBins || !(to > from)) return std::nullopt;
+  const double bin = (to - from) / kBins;
+  for (int length = kBins; length >= kFewestBins; --length) {
+    // Of equally long windows the one with the highest rate: a trickle before or after the flow is steady too.
+    std::optional<SteadyFlow> best;
+    for (int first = 0; first + length <= kBins; ++first) {
+      const double a = from + first * bin, b = a + length * bin;
+      if (!is_steady(samples, a, b)) continue;
+      const auto s = steady_flow_in(samples, a, b);
+      if (s && (!best || s->rate > best->rate)) best = s;
+    }
+    if (best) return best;
+  }
+  return std::nullopt;
+}
+
+}  // namespace scree

@@ -1,0 +1,36 @@
+// Mass that has passed an outlet, its rate, and the steady part of a discharge curve.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/case.h"
+#include "runtime/engine.h"
+
+namespace scree {
+
+// Everything beyond the outlet's plane counts as discharged, whether it is still in the run or was taken out.
+bool beyond(const Outlet& outlet, const ParticleState& p, double distance = 0);
+
+struct FlowSample {
+  double time;                     // s since the run began
+  std::vector<double> discharged;  // kg, per outlet
+  double total() const;
+};
+
+struct SteadyFlow {
+  double rate = 0, standard_error = 0;  // kg/s
+  double from = 0, to = 0;              // s, the window
+  int bins = 0;                         // independent stretches that the standard error comes from
+};
+
+// The longest window in which the flow neither trends nor wanders: bins of equal length, the mean of any half of the
+// window within `kSteadyTolerance` of the whole. Rate: slope between the window's ends. Standard error: from the scatter
+// of bin means, bins long enough to be independent. Nothing if there is no such window of at least a fifth of [from, to].
+std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& samples, double from, double to);
+
+// The same quantities for a window that the user named.
+std::optional<SteadyFlow> steady_flow_in(const std::vector<FlowSample>& samples, double from, double to);
+
+}  // namespace scree

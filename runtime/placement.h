@@ -1,0 +1,65 @@
+// Puts particles into regions without overlaps: at once (fill) or batch by batch (pour).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "geometry/closest_point.h"
+#include "geometry/solid_index.h"
+#include "runtime/engine.h"
+#include "runtime/particle_source.h"
+
+namespace scree {
+
+// The inside of a region, and what is in its way.
+class FreeSpace {
+ public:
+  FreeSpace(const Region& region, const Solid& solid);
+
+  // Nearest allowed centre (or nearly): inside the region by `radius`, clear of the solid by `radius`.
+  Vec3 confine(const Vec3& x, double radius) const;
+  bool allows(const Vec3& x, double radius) const;
+  Vec3 random_point(Random& random) const;  // uniform in the region's bounds
+  const Bounds& bounds() const { return bounds_; }
+
+  // m3 of the region not inside the solid, by sampling (error about 0.5 %).
+  double volume() const;
+
+ private:
+  Vec3 inside_region(const Vec3& x, double radius) const;
+  const Region& region_;
+  Bounds bounds_;
+  std::vector<PreparedPrimitive> prepared_;
+  std::unique_ptr<SolidIndex> index_;
+};
+
+// A dense random packing: regions in order, each up to the stage's solid fraction of its free space, until mass or count
+// is reached. Throws RunError if they do not fit.
+std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Solid& solid, std::span<const ParticleState> present,
+                                uint64_t stream);
+
+// One pour: owes what the rate has brought, places what finds room.
+class Pour {
+ public:
+  Pour(const Case& c, const PourStage& stage, const Solid& solid, uint64_t stream);
+
+  // Seconds between batches: a batch is what fills the region to the stage's solid fraction, or what is left.
+  double batch_interval() const { return batch_interval_; }
+  bool done() const { return stage_.mass > 0 ? mass_ >= stage_.mass : count_ >= stage_.count; }
+  double mass() const { return mass_; }
+
+  // Particles for `elapsed` seconds since the pour began, clear of those present.
+  std::vector<ParticleState> batch(double elapsed, std::span<const ParticleState> present);
+
+ private:
+  PourStage stage_;
+  FreeSpace space_;
+  ParticleSource source_;
+  Random random_;
+  double batch_interval_ = 0, mass_ = 0;
+  uint64_t count_ = 0;
+  std::vector<ParticleState> waiting_;  // drawn, found no room yet
+};
+
+}  // namespace scree

@@ -1,0 +1,40 @@
+// The output folder: what a run leaves behind, written as it goes.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/mass_flow.h"
+
+namespace scree {
+
+// A CSV file of numbers. Every row is checked: a full disk is a RunError, not a short file.
+class CsvWriter {
+ public:
+  CsvWriter(const std::filesystem::path& path, const std::vector<std::string>& columns);
+  void row(std::span<const double> values);
+
+ private:
+  void check(int written) const;
+  struct Close {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+// Writes a whole file, to a temporary name first. Throws RunError naming the file and the reason.
+void write_file(const std::filesystem::path& path, std::string_view content);
+
+// Particles as VTK PolyData (.vtp, XML, binary): points with radius, velocity, angular_velocity, id, kind, mass. Opens in
+// ParaView (Glyph: sphere, scale by radius) and in OVITO.
+void write_particles_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles);
+
+}  // namespace scree

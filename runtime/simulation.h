@@ -1,0 +1,40 @@
+// Runs a case: its stages one after the other, what is measured on the way, and the results folder.
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "runtime/engine.h"
+#include "runtime/mass_flow.h"
+
+namespace scree {
+
+struct RunOptions {
+  std::filesystem::path out;
+  int threads = 0;           // 0: all processors
+  bool show_progress = false;  // on a terminal
+  EngineOptions engine;
+  const volatile std::sig_atomic_t* stop = nullptr;  // set from outside (Ctrl-C): the run ends with what it has
+};
+
+enum class RunStatus { done, interrupted, failed };
+
+struct RunResult {
+  RunStatus status = RunStatus::done;
+  std::string message;  // why it failed
+  std::optional<SteadyFlow> steady;
+  std::filesystem::path out;
+};
+
+// Writes run.log, case.toml, mass_flow.csv, meters.csv (when the case has meters), particles.vtp, summary.json into
+// options.out, whatever the end. Throws CaseError for a case that cannot start; never RunError: a failed run is a result.
+RunResult run_case(const Case& c, const RunOptions& options);
+
+// What `scree check` prints: what will run, its time scales, memory (runtime/describe_case.cpp).
+std::string describe_case(const Case& c);
+// And how long it takes at most, from the speed of a small bed that is run now for half a second.
+std::string estimate_time(const Case& c);
+
+}  // namespace scree

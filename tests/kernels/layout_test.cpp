@@ -1,0 +1,92 @@
+// Imports run one way: geometry <- kernels <- runtime; a foreign library lives behind one file.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kRoot = SCREE_SOURCE_DIR;
+
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+// The sources of these rooms for which `wanted` holds, as paths from the root.
+std::set<std::string> sources_where(const std::set<std::string>& rooms, const std::function<bool(const std::string& text)>& wanted) {
+  std::set<std::string> result;
+  for (const std::string& room : rooms)
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / room))
+      if (const auto suffix = entry.path().extension(); suffix == ".h" || suffix == ".cpp")
+        if (wanted(text_of(entry.path()))) result.insert(fs::relative(entry.path(), kRoot).string());
+  return result;
+}
+
+// Whether some line is an #include of a path that begins with `prefix`.
+auto includes(const std::string& prefix) {
+  return [prefix](const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      const size_t hash = line.find_first_not_of(" \t");
+      if (hash == std::string::npos || line[hash] != '#' || line.find("include") == std::string::npos) continue;
+      const size_t open = line.find_first_of("\"<");
+      if (open != std::string::npos && line.compare(open + 1, prefix.size(), prefix) == 0) return true;
+    }
+    return false;
+  };
+}
+
+auto names(const std::string& word) {
+  return [word](const std::string& text) { return text.find(word) != std::string::npos; };
+}
+
+using Files = std::set<std::string>;
+const Files kRooms{"geometry", "kernels", "runtime"};
+
+TEST(Layout, GeometryIncludesNothingOfKernelsOrRuntime) {
+  EXPECT_EQ(sources_where({"geometry"}, includes("kernels/")), Files{});
+  EXPECT_EQ(sources_where({"geometry"}, includes("runtime/")), Files{});
+}
+
+TEST(Layout, KernelsIncludeNothingOfRuntime) {
+  EXPECT_EQ(sources_where({"kernels"}, includes("runtime/")), Files{});
+  EXPECT_FALSE(sources_where({"kernels"}, includes("geometry/")).empty());  // the walk sees includes
+}
+
+TEST(Layout, NothingIncludesTestsOrBenchmarks) {
+  for (const char* room : {"tests/", "bench/"}) EXPECT_EQ(sources_where(kRooms, includes(room)), Files{});
+}
+
+TEST(Layout, OneFileNamesTheSimdLibrary) {
+  EXPECT_EQ(sources_where(kRooms, includes("hwy/")), Files{"kernels/simd.h"});
+  EXPECT_EQ(sources_where(kRooms, includes("immintrin")), Files{});
+}
+
+TEST(Layout, OneFileNamesTheThreadingRuntime) {
+  EXPECT_EQ(sources_where(kRooms, includes("omp.h")), Files{"kernels/parallel.h"});
+  EXPECT_EQ(sources_where(kRooms, names("#pragma omp")), Files{"kernels/parallel.h"});
+  EXPECT_EQ(sources_where(kRooms, includes("tbb/")), Files{});
+}
+
+TEST(Layout, OneFileIncludesEmbree) { EXPECT_EQ(sources_where(kRooms, includes("embree")), Files{"geometry/embree_index.cpp"}); }
+
+// Files, logging and case files stay out of the data-parallel core.
+TEST(Layout, KernelsKnowNoFilesAndNoFormats) {
+  for (const char* foreign : {"toml", "hdf5", "spdlog", "fstream", "iostream", "filesystem"}) EXPECT_EQ(sources_where({"kernels"}, includes(foreign)), Files{}) << foreign;
+}
+
+TEST(Layout, EveryHeaderIsIncludedOnce) {
+  const auto unguarded = [](const std::string& text) { return text.find("#pragma once") == std::string::npos; };
+  for (const std::string& file : sources_where(kRooms, unguarded)) EXPECT_TRUE(file.ends_with(".cpp")) << file << " has no #pragma once";
+}
+
+}  // namespace
+}  // namespace scree
