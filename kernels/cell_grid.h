@@ -27,7 +27,7 @@ class CellGrid {
   };
   std::vector<Range> ranges;  // by linear(); filled by the rebuild
 
-  // The cell `offset` (-1, 0, 1 along each axis) away. Returns false outside the grid; `shift` is what must be added to
+  // The cell `offset` away, at most one cell beyond the grid along an axis. Returns false outside the grid; `shift` is what must be added to
   // positions in that cell to see them as neighbours across a periodic border (m).
   bool neighbour(const std::array<uint32_t, 3>& c, const std::array<int, 3>& offset, std::array<uint32_t, 3>& other, Vec3& shift) const;
 

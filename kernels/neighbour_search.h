@@ -1,6 +1,8 @@
 // Finds the pairs of one chunk: active ones into blocks with their carried history, the rest of the skin into `near`.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -38,19 +40,23 @@ struct Candidates {
     x.resize(count), y.resize(count), z.resize(count), radius.resize(count), index.resize(count);
   }
 
+  // Cells `low`..`high` and those around them. Particles begin..first are left out: their pairs with ours are listed
+  // already (a pair inside a chunk is listed at its lower index).
   template <class Real>
-  void gather(const Particle<Real>* particles, const CellGrid& grid, const std::array<uint32_t, 3>& cell, const Vec3& centre) {
+  void gather(const SearchTask<Real>& task, const std::array<uint32_t, 3>& low, const std::array<uint32_t, 3>& high, uint32_t first, const Vec3& centre) {
     size = 0;
-    for (int dz = -1; dz <= 1; ++dz)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
+    const auto span = [&](int axis) { return static_cast<int>(high[axis] - low[axis]) + 1; };
+    for (int dz = -1; dz <= span(2); ++dz)
+      for (int dy = -1; dy <= span(1); ++dy)
+        for (int dx = -1; dx <= span(0); ++dx) {
           std::array<uint32_t, 3> other;
           Vec3 shift;
-          if (!grid.neighbour(cell, {dx, dy, dz}, other, shift)) continue;
-          const CellGrid::Range range = grid.ranges[grid.linear(other)];
+          if (!task.grid->neighbour(low, {dx, dy, dz}, other, shift)) continue;
+          CellGrid::Range range = task.grid->ranges[task.grid->linear(other)];
+          if (range.begin >= task.begin && range.begin < first) range.begin = std::min(range.end, first);
           reserve(size + (range.end - range.begin) + 16);
           for (uint32_t k = range.begin; k < range.end; ++k, ++size) {
-            const Particle<Real>& p = particles[k];
+            const Particle<Real>& p = task.particles[k];
             x[size] = static_cast<float>(p.x + shift.x - centre.x);
             y[size] = static_cast<float>(p.y + shift.y - centre.y);
             z[size] = static_cast<float>(p.z + shift.z - centre.z);
@@ -97,15 +103,26 @@ inline void search_particle(const SearchTask<typename L::Real>& task, const Cand
   }
 }
 
+// Particles of up to 2 x 2 x 2 cells (a run in Morton order) share one gathering of candidates: a cell holds about one
+// particle, its neighbourhood fifty.
 template <class L>
 void search_chunk(const SearchTask<typename L::Real>& task) {
   thread_local Candidates candidates;
   const auto position = [&](uint32_t k) { return Vec3{task.particles[k].x, task.particles[k].y, task.particles[k].z}; };
+  const auto cell_of = [&](uint32_t k) { return task.grid->cell_of(position(k)); };
   for (uint32_t first = task.begin; first < task.end;) {
-    const auto cell = task.grid->cell_of(position(first));
+    std::array<uint32_t, 3> low = cell_of(first), high = low;
+    const std::array<uint32_t, 3> family{low[0] / 2, low[1] / 2, low[2] / 2};
+    uint32_t last = first;
+    for (auto cell = low; last < task.end; ) {
+      for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], cell[a]), high[a] = std::max(high[a], cell[a]);
+      last = std::min(task.end, task.grid->ranges[task.grid->linear(cell)].end);
+      if (last == task.end) break;
+      cell = cell_of(last);
+      if (std::array<uint32_t, 3>{cell[0] / 2, cell[1] / 2, cell[2] / 2} != family) break;
+    }
     const Vec3 centre = position(first);
-    const uint32_t last = std::min(task.end, task.grid->ranges[task.grid->linear(cell)].end);
-    candidates.gather(task.particles, *task.grid, cell, centre);
+    candidates.gather(task, low, high, first, centre);
     for (uint32_t i = first; i < last; ++i) search_particle<L>(task, candidates, i, centre);
     first = last;
   }

@@ -12,11 +12,11 @@ inline int thread_count() { return omp_get_max_threads(); }
 inline void set_thread_count(int threads) { omp_set_num_threads(threads); }
 inline int thread_index() { return omp_get_thread_num(); }
 
-// body(k) for k in [0, count), in any order, on all threads. Pieces of one thread are neighbours (first touch, caches);
-// what is left over at the end is shared out. body must not throw.
+// body(k) for k in [0, count), in any order, on all threads. Handed out one by one: a piece takes tens of microseconds
+// and a thread that is interrupted must not hold up the rest. body must not throw.
 template <class Body>
 void parallel_for(size_t count, const Body& body) {
-#pragma omp parallel for schedule(guided)
+#pragma omp parallel for schedule(dynamic, 1)
   for (size_t k = 0; k < count; ++k) body(k);
 }
 

@@ -13,6 +13,7 @@
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/spdlog.h>
 
+#include "geometry/bounds.h"
 #include "kernels/parallel.h"
 #include "runtime/case_error.h"
 #include "runtime/case_physics.h"
@@ -123,14 +124,23 @@ class Simulation {
     log_->info("placed {} particles", placed.size());
   }
 
+  uint32_t kind_named(const CsvParticle& p, const std::string& file) const {
+    std::string known;
+    for (uint32_t k = 0; k < case_.kinds.size(); ++k) {
+      if (case_.kinds[k].name == p.kind) return k;
+      known += (k ? ", '" : "'") + case_.kinds[k].name + "'";
+    }
+    throw CaseError({file, p.line, 1}, fmt::format("no particle kind is named '{}'; the case has {}", p.kind, known));
+  }
+
   void run_stage(const std::string& name, const ReadStage& s) {
     begin(name, "read");
     std::vector<ParticleState> particles;
     for (const CsvParticle& p : read_particles_csv(s.file)) {
       ParticleState state;
-      state.kind = s.kind;
-      for (uint32_t k = 0; k < case_.kinds.size(); ++k)
-        if (!p.kind.empty() && case_.kinds[k].name == p.kind) state.kind = k;
+      state.kind = p.kind.empty() ? s.kind : kind_named(p, s.file);
+      if (!contains(case_.domain, p.position))
+        throw CaseError({s.file, p.line, 1}, fmt::format("the particle at ({:.6g}, {:.6g}, {:.6g}) m is outside the domain", p.position.x, p.position.y, p.position.z));
       state.position = p.position, state.velocity = p.velocity, state.radius = p.radius;
       state.mass = sphere_mass(p.radius, case_.materials[case_.kinds[state.kind].material].density);
       particles.push_back(state);

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/case_error.h"
 #include "runtime/case_physics.h"
 
 namespace scree {
@@ -21,10 +20,6 @@ TimeScales time_scales(const Case& c) {
 std::vector<std::string> time_step_warnings(const Case& c) {
   const TimeScales s = time_scales(c);
   const double share = s.step / s.rayleigh;
-  if (share > 0.5 && !c.time.allow_large_step)
-    throw CaseError({c.source, 0, 0}, fmt::format("key 'time.step': {:.4g} s is {:.2f} of the smallest Rayleigh time {:.4g} s, at most 0.5 is allowed "
-                                                  "(0.2 is usual): use {:.3g} s, or set time.allow_large_step = true",
-                                                  s.step, share, s.rayleigh, 0.2 * s.rayleigh));
   if (share <= 0.3) return {};
   return {fmt::format("the time step {:.4g} s is {:.2f} of the smallest Rayleigh time {:.4g} s; above 0.3 contacts are badly resolved", s.step, share, s.rayleigh)};
 }

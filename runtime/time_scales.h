@@ -17,7 +17,7 @@ struct TimeScales {
 
 TimeScales time_scales(const Case& c);
 
-// Above 0.3 of the Rayleigh time a warning. Above 0.5 CaseError, unless the case says [time] allow_large_step.
+// Above 0.3 of the Rayleigh time. (The reader refuses more than 0.5 unless the case says [time] allow_large_step.)
 std::vector<std::string> time_step_warnings(const Case& c);
 
 }  // namespace scree

@@ -72,16 +72,16 @@ Trace run(const Scene& scene, int threads, const std::string& isa) {
   EngineOptions options;
   options.isa = isa;
   const auto engine = make_engine(c, options);
-  auto charge = wave(scene, -0.0095, 30, 1);
+  auto charge = wave(scene, -0.0095, 8, 1);
   std::erase_if(charge, [&](const ParticleState& g) {
-    return g.position.z > -3e-4 || std::ranges::any_of(c.solid.primitives, [&](const Primitive& p) { return distance(p, g.position) < g.radius; });
+    return std::ranges::any_of(c.solid.primitives, [&](const Primitive& p) { return distance(p, g.position) < g.radius; });
   });
   engine->insert(charge);
   engine->insert(wave(scene, 2e-4, 2, 2));
-  engine->set_removal([](const ParticleState& p) { return p.position.z < -0.0105 ? 0 : -1; });
+  engine->set_removal([](const ParticleState& p) { return p.position.z < -0.0097 ? 0 : -1; });
   Trace trace;
   for (int leg = 0; leg < 5; ++leg) {
-    run_steps(*engine, 120);
+    run_steps(*engine, 100);
     if (leg == 0) engine->insert(wave(scene, 1.3e-3, 1, 3));
     if (leg == 1) engine->open_walls({3});
     trace.hashes.push_back(engine->state_hash());

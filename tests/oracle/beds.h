@@ -40,7 +40,7 @@ inline Case ceramic_case(const Bounds& domain, const std::set<char>& periodic = 
 inline ParticleState grain(const Vec3& position, double radius = kRadius, const Vec3& velocity = {0, 0, 0}) {
   ParticleState p;
   p.radius = static_cast<double>(static_cast<float>(radius));  // the same number in both precisions
-  p.position = position, p.velocity = velocity, p.mass = sphere_mass(p.radius, kDensity);
+  p.position = position, p.velocity = velocity, p.spin = {0, 0, 0}, p.mass = sphere_mass(p.radius, kDensity);
   return p;
 }
 

@@ -116,7 +116,7 @@ TEST(History, IsNotDisturbedByInsertionRemovalOrAnOpenedWallElsewhere) {
   const std::vector<ParticleState> before = by_id(*plain);
   disturbed->set_removal([](const ParticleState& p) { return p.position.z > 0.016 ? 0 : -1; });
   for (int k = 0; k < 10; ++k) {
-    disturbed->insert(LooseBed{6, 6, 4}.particles({-0.01, 0.003, 0.0153}, 50 + k));
+    disturbed->insert(LooseBed{6, 6, 4}.particles({-0.018 + 0.0035 * k, 0.003, 0.0153}, 50 + k));
     run_steps(*disturbed, 7);
     if (k == 4) disturbed->open_walls({1});
   }
