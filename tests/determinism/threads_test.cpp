@@ -81,7 +81,7 @@ Trace run(const Scene& scene, int threads, const std::string& isa) {
   engine->set_removal([](const ParticleState& p) { return p.position.z < -0.0097 ? 0 : -1; });
   Trace trace;
   for (int leg = 0; leg < 5; ++leg) {
-    run_steps(*engine, 100);
+    run_steps(*engine, 60);
     if (leg == 0) engine->insert(wave(scene, 1.3e-3, 1, 3));
     if (leg == 1) engine->open_walls({3});
     trace.hashes.push_back(engine->state_hash());
@@ -129,21 +129,26 @@ TEST(Determinism, OfTheHashNoticesTheLastBit) {
   EXPECT_EQ(hashes.size(), 4u);
 }
 
-class InstructionSets : public ::testing::TestWithParam<std::tuple<RollingModel, bool, bool, bool>> {};
+class InstructionSets : public ::testing::TestWithParam<Scene> {};
 
 TEST_P(InstructionSets, GiveTheSameBits) {
-  const auto [rolling, several, periodic, polydisperse] = GetParam();
-  const Scene scene{rolling, several, periodic, polydisperse};
   const auto isas = available_isas();
   ASSERT_GE(isas.size(), 2u);
-  const Trace first = run(scene, 2, isas[0]);
+  const Trace first = run(GetParam(), 2, isas[0]);
   expect_worth_comparing(first);
-  for (size_t k = 1; k < isas.size(); ++k) EXPECT_EQ(run(scene, 1, isas[k]), first) << isas[k] << " against " << isas[0] << ", " << scene.name();
+  for (size_t k = 1; k < isas.size(); ++k)
+    EXPECT_EQ(run(GetParam(), 1, isas[k]), first) << isas[k] << " against " << isas[0] << ", " << GetParam().name();
 }
 
-INSTANTIATE_TEST_SUITE_P(Determinism, InstructionSets,
-                         ::testing::Combine(::testing::Values(RollingModel::none, RollingModel::cdt, RollingModel::epsd2), ::testing::Bool(),
-                                            ::testing::Bool(), ::testing::Bool()));
+// Every two choices occur together.
+std::vector<Scene> scenes() {
+  std::vector<Scene> result;
+  for (const RollingModel rolling : {RollingModel::none, RollingModel::cdt, RollingModel::epsd2})
+    for (const int pick : {0, 1, 2, 3}) result.push_back({rolling, pick == 1 || pick == 2, pick == 1 || pick == 3, pick == 2 || pick == 3});
+  return result;
+}
+
+INSTANTIATE_TEST_SUITE_P(Determinism, InstructionSets, ::testing::ValuesIn(scenes()));
 
 }  // namespace
 }  // namespace scree
