@@ -12,7 +12,7 @@ namespace scree {
 
 class CellGrid {
  public:
-  // Cells at least `min_cell` (m) wide, at most about `max_cells` of them: wider where the box is large and empty.
+  // Cells at least `min_cell` (m, > 0) wide, at most about `max_cells` of them: wider where the box is large and empty.
   // Along a periodic axis (period > 0) the cells divide the period evenly and neighbours wrap round.
   void lay(const Bounds& box, const double period[3], double min_cell, size_t max_cells);
 

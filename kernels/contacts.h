@@ -44,7 +44,7 @@ struct alignas(64) SolidSlot {
   uint32_t live = 0;  // bit per lane: touched in the last step, so its history counts
 };
 
-inline constexpr uint32_t kMaxSlots = 48;  // solid primitives near one particle
+inline constexpr uint32_t kMaxSlots = 192;  // solid primitives near one particle
 
 template <class Real>
 struct ChunkContacts {

@@ -2,7 +2,7 @@
 //
 // Particles in lanes, the primitives near them in slots. The solid is the *union* of its primitives (physics.md): after
 // all slots are evaluated, a contact point that lies in or on another touching primitive is buried and exerts nothing;
-// of contacts that are one point of several surfaces (a cap shared by fibres, an edge shared by walls) the first stays.
+// of contacts that are one point of several surfaces (a cap shared by fibres, an edge shared by walls) the deepest stays.
 //
 //        \  a  /            x touches a and b. a's point pa lies inside b: buried. b's point pb is on the surface of
 //      ---\pa/----  b       the union: felt.
@@ -64,6 +64,10 @@ struct SolidLanes {
   Vec<F> point[kMaxSlots];  // contact point on the surface, relative to the particle's centre
   Mask touching[kMaxSlots], kept[kMaxSlots];
 
+  // The arrays are left as they are: only the block's slots are written and read.
+  SolidLanes(const ChunkTask<Real>& t, const SolidBlock& b, SolidSlot<Real>* s, int first_lane)
+      : task(t), block(b), slots(s), lane(first_lane), i(gather_bodies<L>(t.old_particles, b.i + first_lane)) {}
+
   const uint32_t* primitives(uint32_t s) const { return slots[s].primitive + lane; }
 
   ClosestPoint<D> closest(uint32_t s, const Vec<D>& x) const {
@@ -111,8 +115,11 @@ struct SolidLanes {
         const Mask both = touching[a] & touching[b];
         if (!any(both)) continue;
         const Mask a_in_b = both & (gap(a, b) < tolerance), b_in_a = both & (gap(b, a) < tolerance);
-        kept[b] = kept[b] & !b_in_a;
-        kept[a] = kept[a] & !(a_in_b & !b_in_a);
+        // Each in or on the other: one point of both surfaces. The deeper one is the true contact; the other is the
+        // nearest cap or edge, tilted by what the tolerance lets through.
+        const Mask a_deeper = overlap[a] >= overlap[b];
+        kept[b] = kept[b] & !(b_in_a & (a_deeper | !a_in_b));
+        kept[a] = kept[a] & !(a_in_b & !(b_in_a & a_deeper));
       }
   }
 
@@ -182,7 +189,7 @@ template <class L, class Traits>
 inline void solid_lanes(const ChunkTask<typename L::Real>& task, const SolidBlock& block, SolidSlot<typename L::Real>* slots,
                         int lane, typename L::F& max_share) {
   using F = typename L::F;
-  SolidLanes<L> lanes{task, block, slots, lane, gather_bodies<L>(task.old_particles, block.i + lane), {}, {}, {}, {}, {}};
+  SolidLanes<L> lanes(task, block, slots, lane);
   const uint32_t count = block.slots();
   unsigned touched = 0;
   for (uint32_t s = 0; s < count; ++s) touched += lanes.evaluate(s);

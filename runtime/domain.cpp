@@ -254,7 +254,9 @@ std::vector<uint8_t> Domain<Real>::take_out_leavers() {
 template <class Real>
 void Domain<Real>::sort_particles() {
   const std::vector<uint8_t> gone = take_out_leavers();
-  grid_.lay(occupied_bounds(), settings_.period, 2 * max_radius_ + skin_, std::max<size_t>(4096, size_t{4} * count_));
+  const Vec3 size = box_.max - box_.min;
+  const double cell = max_radius_ > 0 ? 2 * max_radius_ + skin_ : std::max({size.x, size.y, size.z});
+  grid_.lay(occupied_bounds(), settings_.period, cell, std::max<size_t>(4096, size_t{4} * count_));
 
   packed_.resize(count_);
   parallel_for((count_ + kChunk - 1) / kChunk, [&](size_t c) {

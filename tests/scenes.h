@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "geometry/walls.h"

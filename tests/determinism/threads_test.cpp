@@ -26,8 +26,8 @@ struct Scene {
   RollingModel rolling = RollingModel::epsd2;
   bool several_materials = false, periodic = false, polydisperse = false;
   std::string name() const {
-    return fmt::format("rolling {}{}{}{}", static_cast<int>(rolling), several_materials ? ", several materials" : "", periodic ? ", periodic" : "",
-                       polydisperse ? ", polydisperse" : "");
+    return fmt::format("rolling {}{}{}{}", static_cast<int>(rolling), several_materials ? ", several materials" : "",
+                       periodic ? ", periodic" : "", polydisperse ? ", polydisperse" : "");
   }
 };
 
@@ -74,7 +74,8 @@ Trace run(const Scene& scene, int threads, const std::string& isa) {
   const auto engine = make_engine(c, options);
   auto charge = wave(scene, -0.0095, 8, 1);
   std::erase_if(charge, [&](const ParticleState& g) {
-    return std::ranges::any_of(c.solid.primitives, [&](const Primitive& p) { return distance(p, g.position) < g.radius; });
+    return std::ranges::any_of(c.solid.primitives,
+                               [&](const Primitive& p) { return distance(p, g.position) < g.radius; });
   });
   engine->insert(charge);
   engine->insert(wave(scene, 2e-4, 2, 2));
@@ -104,7 +105,8 @@ TEST(Determinism, OfADrainDoesNotDependOnTheNumberOfThreads) {
   for (const Scene& scene : {Scene{}, Scene{RollingModel::cdt, true, true, true}}) {
     const Trace one = run(scene, 1, "");
     expect_worth_comparing(one);
-    for (const int threads : {2, 3, 4, 8}) EXPECT_EQ(run(scene, threads, ""), one) << threads << " threads, " << scene.name();
+    for (const int threads : {2, 3, 4, 8})
+      EXPECT_EQ(run(scene, threads, ""), one) << threads << " threads, " << scene.name();
   }
 }
 
@@ -144,7 +146,8 @@ TEST_P(InstructionSets, GiveTheSameBits) {
 std::vector<Scene> scenes() {
   std::vector<Scene> result;
   for (const RollingModel rolling : {RollingModel::none, RollingModel::cdt, RollingModel::epsd2})
-    for (const int pick : {0, 1, 2, 3}) result.push_back({rolling, pick == 1 || pick == 2, pick == 1 || pick == 3, pick == 2 || pick == 3});
+    for (const int pick : {0, 1, 2, 3})
+      result.push_back({rolling, pick == 1 || pick == 2, pick == 1 || pick == 3, pick == 2 || pick == 3});
   return result;
 }
 

@@ -44,7 +44,8 @@ void expect_codes_unique(const CellGrid& grid, const Cell& n) {
 }
 
 TEST(CellGrid, CodesAreUniqueInEveryShape) {
-  for (const Vec3& size : {Vec3{10, 10, 10}, Vec3{1, 1, 1}, Vec3{33, 1, 1}, Vec3{1, 100, 3}, Vec3{7, 64, 65}, Vec3{0.5, 0.5, 200}}) {
+  for (const Vec3& size :
+       {Vec3{10, 10, 10}, Vec3{1, 1, 1}, Vec3{33, 1, 1}, Vec3{1, 100, 3}, Vec3{7, 64, 65}, Vec3{0.5, 0.5, 200}}) {
     const Bounds box{{-3, 5, 0.25}, Vec3{-3, 5, 0.25} + size};
     CellGrid grid;
     grid.lay(box, kOpen, 1, kPlenty);

@@ -31,8 +31,9 @@ constexpr ElasticModuli kSoft{1e7, 0.28}, kHard{7e10, 0.33};
 
 template <class Real>
 PairConstants<Real> narrowed(const PairConstants<double>& p) {
-  return {static_cast<Real>(p.effective_youngs), static_cast<Real>(p.effective_shear),  static_cast<Real>(p.normal_damping),
-          static_cast<Real>(p.tangential_damping), static_cast<Real>(p.sliding_friction), static_cast<Real>(p.rolling_friction)};
+  return {static_cast<Real>(p.effective_youngs), static_cast<Real>(p.effective_shear),
+          static_cast<Real>(p.normal_damping),   static_cast<Real>(p.tangential_damping),
+          static_cast<Real>(p.sliding_friction), static_cast<Real>(p.rolling_friction)};
 }
 
 template <class T>
@@ -54,7 +55,8 @@ void expect_exactly_odd(uint32_t seed) {
   int slid = 0, stuck = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     const auto body = [&](const Vec<double>& x) {
-      return Bodies<L>{x, random.vector<Real>(0.3), random.vector<Real>(500), static_cast<Real>(random.between(1e-4, 1e-3)),
+      return Bodies<L>{x, random.vector<Real>(0.3), random.vector<Real>(500),
+                       static_cast<Real>(random.between(1e-4, 1e-3)),
                        static_cast<Real>(std::pow(10, random.between(6, 9)))};
     };
     Bodies<L> i = body(random.vector<double>(0.01)), j = body({0, 0, 0});
@@ -104,7 +106,8 @@ TEST(ContactLaw, OfACentralCollisionIsHertz) {
   const double elastic = 4.0 / 3.0 * youngs * std::sqrt(1e-4) * std::pow(4e-6, 1.5);
   const double damping = -2 * std::sqrt(5.0 / 6.0) * b * std::sqrt(2 * youngs * std::sqrt(1e-4 * 4e-6) * 5e-8);
   ContactHistory<double> history{};
-  const auto r = hertz_mindlin<RollingModel::epsd2>(c, pair_constants(kSoft, kSoft, 0.52, 0.5, 0.3), 5e-6, false, history);
+  const auto r =
+      hertz_mindlin<RollingModel::epsd2>(c, pair_constants(kSoft, kSoft, 0.52, 0.5, 0.3), 5e-6, false, history);
   EXPECT_NEAR(r.force.z, elastic + 0.1 * damping, 1e-12 * r.force.z);
   EXPECT_EQ(r.force.x, 0);
   EXPECT_EQ(r.force.y, 0);
@@ -115,10 +118,17 @@ TEST(ContactLaw, KeepsTheSpringWithinCoulombsLimit) {
   const PairConstants<double> p = pair_constants(kSoft, kSoft, 0.52, 0.4, 0.3);
   for (int trial = 0; trial < 1000; ++trial) {
     const Vec3 n = unit(random.vector<double>(1));
-    Contact<double> c{n, random.between(1e-8, 1e-6), 1e-4, 5e-8, random.vector<double>(0.1), random.vector<double>(0.1), random.vector<double>(100)};
+    Contact<double> c{n,
+                      random.between(1e-8, 1e-6),
+                      1e-4,
+                      5e-8,
+                      random.vector<double>(0.1),
+                      random.vector<double>(0.1),
+                      random.vector<double>(100)};
     ContactHistory<double> h{random.vector<double>(1e-6), random.vector<double>(1e-6)};
     const auto r = hertz_mindlin<RollingModel::epsd2>(c, p, 5e-6, false, h);
-    const double normal_force = std::abs(dot(r.force, n)), k_t = 8 * p.effective_shear * std::sqrt(c.effective_radius * c.overlap);
+    const double normal_force = std::abs(dot(r.force, n)),
+                 k_t = 8 * p.effective_shear * std::sqrt(c.effective_radius * c.overlap);
     EXPECT_LE(k_t * norm(h.tangential_displacement), 0.4 * normal_force * (1 + 1e-9));
     EXPECT_LE(norm(r.rolling), 0.3 * normal_force * c.effective_radius * (1 + 1e-9));
     EXPECT_NEAR(dot(h.tangential_displacement, n), 0, 1e-12 * norm(h.tangential_displacement) + 1e-20);
@@ -126,7 +136,8 @@ TEST(ContactLaw, KeepsTheSpringWithinCoulombsLimit) {
   }
 }
 
-// ---- constants ---------------------------------------------------------------------------------------------------------
+// ---- constants
+// ---------------------------------------------------------------------------------------------------------
 
 TEST(PairConstants, AreThoseWorkedOutByHand) {
   // E 10 MPa, nu 0.25 against E 40 MPa, nu 0.4:
@@ -136,7 +147,8 @@ TEST(PairConstants, AreThoseWorkedOutByHand) {
   const auto p = pair_constants({1e7, 0.25}, {4e7, 0.4}, 0.5, 0.3, 0.2);
   EXPECT_NEAR(p.effective_youngs, 8714596.949891067, 1e-6);
   EXPECT_NEAR(p.effective_shear, 1819836.214740673, 1e-6);
-  const double b = -0.6931471805599453 / std::sqrt(0.4804530139182014 + 9.869604401089358), c = -2 * 0.9128709291752769 * b;
+  const double b = -0.6931471805599453 / std::sqrt(0.4804530139182014 + 9.869604401089358),
+               c = -2 * 0.9128709291752769 * b;
   EXPECT_NEAR(b, -0.21545, 1e-5);
   EXPECT_NEAR(p.normal_damping, c * std::sqrt(17429193.899782134), 1e-9 * p.normal_damping);
   EXPECT_NEAR(p.tangential_damping, c * std::sqrt(14558689.717925384), 1e-9 * p.tangential_damping);
@@ -176,12 +188,14 @@ TEST(MaterialTable, GivesBackTheRowsThatWereSet) {
   EXPECT_EQ(reinterpret_cast<uintptr_t>(t.row(1, 3)) % 32, 0u);
 }
 
-// ---- periodic axes -----------------------------------------------------------------------------------------------------
+// ---- periodic axes
+// -----------------------------------------------------------------------------------------------------
 
 TEST(MinimumImage, IsExactlyOddAndTheShortest) {
   Random random(6);
   for (int trial = 0; trial < 20000; ++trial) {
-    const double period[3] = {random.between(0.001, 3), trial % 2 ? random.between(0.001, 3) : 0, random.between(0.001, 3)};
+    const double period[3] = {random.between(0.001, 3), trial % 2 ? random.between(0.001, 3) : 0,
+                              random.between(0.001, 3)};
     const Vec3 d{random.between(-1, 1) * period[0], random.between(-9, 9), random.between(-3, 3) * period[2]};
     const Vec3 near = minimum_image(d, period);
     expect_negated(minimum_image(-d, period), near, "minimum image");
@@ -196,7 +210,8 @@ TEST(MinimumImage, IsExactlyOddAndTheShortest) {
 
 TEST(MinimumImage, OfHalfAPeriodIsOdd) {
   const double period[3] = {1, 2, 0.3};
-  for (const Vec3& d : {Vec3{0.5, 1, 0.15}, Vec3{1.5, 3, 0.45}, Vec3{2.5, 5, 0.75}}) expect_negated(minimum_image(-d, period), minimum_image(d, period), "half a period");
+  for (const Vec3& d : {Vec3{0.5, 1, 0.15}, Vec3{1.5, 3, 0.45}, Vec3{2.5, 5, 0.75}})
+    expect_negated(minimum_image(-d, period), minimum_image(d, period), "half a period");
 }
 
 TEST(MinimumImage, LeavesShortDistancesAloneToTheLastBit) {

@@ -39,9 +39,7 @@ class Histories : public ::testing::Test {
   }
   // As the step stores it: inside a chunk once, across two chunks in both, seen from each.
   void touch(uint32_t i, uint32_t j, const Values& v) {
-    const auto add = [&](uint32_t a, uint32_t b, const Values& seen) {
-      add_pair(contacts_[a / kSize], a, b, seen);
-    };
+    const auto add = [&](uint32_t a, uint32_t b, const Values& seen) { add_pair(contacts_[a / kSize], a, b, seen); };
     add(i, j, v);
     if (i / kSize != j / kSize) add(j, i, negated(v));
   }
@@ -143,7 +141,9 @@ TEST_F(Histories, OfTheSolidAreFoundByTheIdentityOfThePrimitive) {
     SolidSlot<float>& slot = c.slots.emplace_back();
     for (int lane = 0; lane < kBlock; ++lane) {
       slot.primitive[lane] = 7 + s;
-      for (int k = 0; k < 6; ++k) slot.history[k][lane] = 100.0f * static_cast<float>(s) + 10.0f * static_cast<float>(lane) + static_cast<float>(k);
+      for (int k = 0; k < 6; ++k)
+        slot.history[k][lane] =
+            100.0f * static_cast<float>(s) + 10.0f * static_cast<float>(lane) + static_cast<float>(k);
     }
     slot.live = s == 1 ? 0b0010u : 0b0001u;
   }

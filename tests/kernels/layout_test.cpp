@@ -21,7 +21,8 @@ std::string text_of(const fs::path& file) {
 }
 
 // The sources of these rooms for which `wanted` holds, as paths from the root.
-std::set<std::string> sources_where(const std::set<std::string>& rooms, const std::function<bool(const std::string& text)>& wanted) {
+std::set<std::string> sources_where(const std::set<std::string>& rooms,
+                                    const std::function<bool(const std::string& text)>& wanted) {
   std::set<std::string> result;
   for (const std::string& room : rooms)
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / room))
@@ -76,16 +77,20 @@ TEST(Layout, OneFileNamesTheThreadingRuntime) {
   EXPECT_EQ(sources_where(kRooms, includes("tbb/")), Files{});
 }
 
-TEST(Layout, OneFileIncludesEmbree) { EXPECT_EQ(sources_where(kRooms, includes("embree")), Files{"geometry/embree_index.cpp"}); }
+TEST(Layout, OneFileIncludesEmbree) {
+  EXPECT_EQ(sources_where(kRooms, includes("embree")), Files{"geometry/embree_index.cpp"});
+}
 
 // Files, logging and case files stay out of the data-parallel core.
 TEST(Layout, KernelsKnowNoFilesAndNoFormats) {
-  for (const char* foreign : {"toml", "hdf5", "spdlog", "fstream", "iostream", "filesystem"}) EXPECT_EQ(sources_where({"kernels"}, includes(foreign)), Files{}) << foreign;
+  for (const char* foreign : {"toml", "hdf5", "spdlog", "fstream", "iostream", "filesystem"})
+    EXPECT_EQ(sources_where({"kernels"}, includes(foreign)), Files{}) << foreign;
 }
 
 TEST(Layout, EveryHeaderIsIncludedOnce) {
   const auto unguarded = [](const std::string& text) { return text.find("#pragma once") == std::string::npos; };
-  for (const std::string& file : sources_where(kRooms, unguarded)) EXPECT_TRUE(file.ends_with(".cpp")) << file << " has no #pragma once";
+  for (const std::string& file : sources_where(kRooms, unguarded))
+    EXPECT_TRUE(file.ends_with(".cpp")) << file << " has no #pragma once";
 }
 
 }  // namespace

@@ -21,11 +21,21 @@ Packed make(size_t count, Order order, int bits) {
   for (size_t k = 0; k < count; ++k) {
     uint64_t code = 0;
     switch (order) {
-      case Order::random: code = random() & most; break;
-      case Order::few_codes: code = (random() % 7) * (most / 7); break;
-      case Order::all_equal: code = most / 3; break;
-      case Order::sorted: code = k * most / count; break;
-      case Order::reversed: code = (count - k) * most / count; break;
+      case Order::random:
+        code = random() & most;
+        break;
+      case Order::few_codes:
+        code = (random() % 7) * (most / 7);
+        break;
+      case Order::all_equal:
+        code = most / 3;
+        break;
+      case Order::sorted:
+        code = k * most / count;
+        break;
+      case Order::reversed:
+        code = (count - k) * most / count;
+        break;
     }
     packed[k] = code << 32 | k;
   }

@@ -58,7 +58,8 @@ TYPED_TEST_SUITE(Lanes, AllLanes);
 TYPED_TEST(Lanes, LoadAndStoreAreInverse) {
   const auto x = this->numbers(kMost + 3);
   for (size_t from = 0; from < 3; ++from)
-    EXPECT_EQ(this->stored(TypeParam::load(&x[from])), std::vector(x.begin() + from, x.begin() + from + TypeParam::width));
+    EXPECT_EQ(this->stored(TypeParam::load(&x[from])),
+              std::vector(x.begin() + from, x.begin() + from + TypeParam::width));
 }
 
 TYPED_TEST(Lanes, RowsBecomeColumns) {
@@ -82,14 +83,16 @@ TYPED_TEST(Lanes, DoubleRowsBecomeColumnsBitForBit) {
   constexpr int width = TypeParam::width;
   for (int trial = 0; trial < 50; ++trial) {
     std::vector<double> table(4 * 40);
-    for (double& x : table) x = std::bit_cast<double>(uint64_t{this->random.below(0xffffffffu)} << 24 | this->random.below(1u << 24));
+    for (double& x : table)
+      x = std::bit_cast<double>(uint64_t{this->random.below(0xffffffffu)} << 24 | this->random.below(1u << 24));
     const double* rows[width];
     for (int k = 0; k < width; ++k) rows[k] = &table[4 * this->random.below(40)];
     typename TypeParam::D columns[4];
     TypeParam::load_double_rows(rows, columns);
     for (int c = 0; c < 4; ++c) {
       const auto column = this->stored_doubles(columns[c]);
-      for (int k = 0; k < width; ++k) ASSERT_EQ(std::bit_cast<uint64_t>(column[k]), std::bit_cast<uint64_t>(rows[k][c]));
+      for (int k = 0; k < width; ++k)
+        ASSERT_EQ(std::bit_cast<uint64_t>(column[k]), std::bit_cast<uint64_t>(rows[k][c]));
     }
   }
 }
@@ -190,7 +193,8 @@ TEST(NativeLanes, ComputeWithTheScalarBits) {
     expect_same(max(fa, fb), each([](float x, float y, float) { return std::max(x, y); }));
     expect_same(select(fa < fb, fa, fc), each([](float x, float y, float z) { return x < y ? x : z; }));
     expect_same(select(fa >= fb, fa, fc), each([](float x, float y, float z) { return x >= y ? x : z; }));
-    expect_same(select((fa > fb) & !(fa > fc), fa, fb), each([](float x, float y, float z) { return x > y && !(x > z) ? x : y; }));
+    expect_same(select((fa > fb) & !(fa > fc), fa, fb),
+                each([](float x, float y, float z) { return x > y && !(x > z) ? x : y; }));
   }
 }
 

@@ -1,7 +1,7 @@
 // The eight impact benchmarks of Chung & Ooi (2011), "Benchmark tests for verifying discrete element modelling codes at
 // particle impact level", Granular Matter 13:643, doi 10.1007/s10035-011-0277-0. Curves are digitised from the paper's
-// figures, as Kratos Multiphysics carries them (applications/DEMApplication/tests/DEM3D_chung_ooi_tests, BSD); materials
-// that the paper's tables give for tests 5-8 are as in Kratos and PySPH. Walls are rigid.
+// figures, as Kratos Multiphysics carries them (applications/DEMApplication/tests/DEM3D_chung_ooi_tests, BSD);
+// materials that the paper's tables give for tests 5-8 are as in Kratos and PySPH. Walls are rigid.
 #include "tests/laws/impact.h"
 
 namespace scree {
@@ -56,12 +56,11 @@ TEST_P(ChungOoi, Test3ReboundSpeedIsRestitutionTimesImpactSpeed) {
 // Columns: angle of incidence from the normal, tangential restitution, final spin, rebound angle of the contact point.
 // The largest differences lie at 10 and 15 degrees, where the curves bend; elsewhere they are half as large.
 TEST_P(ChungOoi, Test4ObliqueImpactAtConstantSpeed) {
-  const double table[][4] = {
-      {5, 0.9481, -19.27, 3.76},    {10, 0.6870, -213.00, -1.56}, {15, 0.6244, -377.83, -5.54},
-      {20, 0.6161, -510.55, -7.54}, {25, 0.6343, -599.39, -7.54}, {30, 0.6837, -616.51, -3.55},
-      {35, 0.7372, -582.26, 3.43},  {40, 0.7809, -544.80, 11.57}, {50, 0.8451, -457.03, 29.35},
-      {60, 0.8929, -357.49, 47.79}, {70, 0.9316, -246.18, 64.58}, {80, 0.9662, -126.30, 78.70},
-      {85, 0.9827, -63.15, 84.52}};
+  const double table[][4] = {{5, 0.9481, -19.27, 3.76},    {10, 0.6870, -213.00, -1.56}, {15, 0.6244, -377.83, -5.54},
+                             {20, 0.6161, -510.55, -7.54}, {25, 0.6343, -599.39, -7.54}, {30, 0.6837, -616.51, -3.55},
+                             {35, 0.7372, -582.26, 3.43},  {40, 0.7809, -544.80, 11.57}, {50, 0.8451, -457.03, 29.35},
+                             {60, 0.8929, -357.49, 47.79}, {70, 0.9316, -246.18, 64.58}, {80, 0.9662, -126.30, 78.70},
+                             {85, 0.9827, -63.15, 84.52}};
   const ImpactBodies oxide{kAluminiumOxide, kRigid, 0.0025, 0.98, 0.092};
   for (const auto& [angle_deg, restitution, spin, rebound_deg] : table) {
     const double vt = 3.9 * std::sin(degrees(angle_deg)), vn = 3.9 * std::cos(degrees(angle_deg));
@@ -73,9 +72,9 @@ TEST_P(ChungOoi, Test4ObliqueImpactAtConstantSpeed) {
   }
 }
 
-// Columns: tan(angle of incidence) / mu, R w / (mu v_n) after the impact of steel and of polyethylene. The paper's curves
-// below gross sliding come from models with micro-slip, which this law (one spring, one slider) does not have: see
-// Test5FollowsTheLawBelowGrossSliding.
+// Columns: tan(angle of incidence) / mu, R w / (mu v_n) after the impact of steel and of polyethylene. The paper's
+// curves below gross sliding come from models with micro-slip, which this law (one spring, one slider) does not have:
+// see Test5FollowsTheLawBelowGrossSliding.
 TEST_P(ChungOoi, Test5GrossSliding) {
   const double steel[][2] = {{6.006, -5.006}, {10.01, -5.004}, {20.00, -4.991}};
   const double polyethylene[][2] = {{6.006, -4.958}, {9.994, -4.963}, {20.00, -4.942}};
@@ -98,17 +97,17 @@ TEST_P(ChungOoi, Test5FollowsTheLawBelowGrossSliding) {
       const ImpactBodies bodies{material, kRigid, radius, 1, mu};
       const PlanarMotion law = planar_impact(bodies, {incidence * mu * vn, -vn, 0});
       const ParticleState p = strike_wall(bodies, {incidence * mu * vn, 0, -vn}, {0, 0, 0}, GetParam()).first;
-      EXPECT_NEAR(radius * p.spin.y / (mu * vn), radius * law.spin / (mu * vn), 5e-3) << material.name << ", " << incidence;
+      EXPECT_NEAR(radius * p.spin.y / (mu * vn), radius * law.spin / (mu * vn), 5e-3)
+          << material.name << ", " << incidence;
     }
 }
 
 // Columns: x = (7/2) mu (1 + e) v_n / (R w_0), tangential restitution of the contact point. Sliding all the time gives
 // x - 1.
-const double kSpinTable[][2] = {{0.187, -0.8152}, {0.358, -0.6262}, {0.551, -0.4394}, {0.765, -0.2378},
-                                {0.979, -0.0173}, {1.214, 0.0961},  {1.492, 0.1108},  {1.770, 0.0898},
-                                {2.091, 0.0583},  {2.519, 0.0058},  {2.989, -0.0488}, {3.631, -0.1034},
-                                {4.508, -0.1391}, {5.770, -0.1622}, {7.845, -0.2042}, {11.91, -0.2588},
-                                {23.98, -0.3386}};
+const double kSpinTable[][2] = {
+    {0.187, -0.8152}, {0.358, -0.6262}, {0.551, -0.4394}, {0.765, -0.2378}, {0.979, -0.0173}, {1.214, 0.0961},
+    {1.492, 0.1108},  {1.770, 0.0898},  {2.091, 0.0583},  {2.519, 0.0058},  {2.989, -0.0488}, {3.631, -0.1034},
+    {4.508, -0.1391}, {5.770, -0.1622}, {7.845, -0.2042}, {11.91, -0.2588}, {23.98, -0.3386}};
 constexpr double kSpinSpeed = 0.2, kSpinFriction = 0.4, kSpinRadius = 0.1;
 
 double slip_of(const ParticleState& p) { return p.velocity.x - kSpinRadius * p.spin.y; }
@@ -163,16 +162,16 @@ TEST_P(ChungOoi, Test8SpinningSphereOnLargeHeavySphere) {
   for (const Material& material : {kAlloy, kNylon})
     for (const double stiffer : {1000.0, 1.0})
       for (const auto& [x, restitution] : kSpinTable) {
-        const Material heavy{"heavy", 1000 * material.density, stiffer * material.youngs_modulus, material.poisson_ratio};
+        const Material heavy{"heavy", 1000 * material.density, stiffer * material.youngs_modulus,
+                             material.poisson_ratio};
         const ImpactBodies bodies{material, heavy, kSpinRadius, 0.5, kSpinFriction};
         const double step = impact_step(bodies, true, kSpinSpeed, kStepsPerContact);
         Case c = impact_case(bodies, step, GetParam());
         add_kind(c, 1, 5 * kSpinRadius);
         const double slip = 3.5 * kSpinFriction * 1.5 * kSpinSpeed / x;
-        const ImpactOutcome out =
-            run_impact(c, {sphere(c, 0, {0, 0, kSpinRadius + 0.37 * step * kSpinSpeed}, {0, 0, -kSpinSpeed},
-                                  {0, -slip / kSpinRadius, 0}),
-                           sphere(c, 1, {0, 0, -5 * kSpinRadius})});
+        const ImpactOutcome out = run_impact(c, {sphere(c, 0, {0, 0, kSpinRadius + 0.37 * step * kSpinSpeed},
+                                                        {0, 0, -kSpinSpeed}, {0, -slip / kSpinRadius, 0}),
+                                                 sphere(c, 1, {0, 0, -5 * kSpinRadius})});
         const double on_wall = tangential_restitution(material, 0.5, x, GetParam());
         EXPECT_NEAR(-slip_of(out.first) / slip, on_wall, 3e-3) << material.name << ", " << stiffer << ", " << x;
       }

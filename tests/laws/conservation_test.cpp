@@ -63,7 +63,9 @@ TEST_P(Conservation, MomentumOfAFreeCluster) {
     const Moments after = moments_of(run.in_order(), about);
     EXPECT_GT(norm(after.first - before.first), 0.1);  // they did meet
     EXPECT_LT(norm(after.momentum - before.momentum) / before.size, round_off(10)) << static_cast<int>(model);
-    EXPECT_LT(norm(after.angular - before.angular) / before.angular_size, round_off(GetParam() == Precision::reference ? 400 : 10)) << static_cast<int>(model);
+    EXPECT_LT(norm(after.angular - before.angular) / before.angular_size,
+              round_off(GetParam() == Precision::reference ? 400 : 10))
+        << static_cast<int>(model);
   }
 }
 
@@ -119,7 +121,8 @@ TEST_P(Conservation, TimeReversalOfElasticCollisions) {
   }
 }
 
-// ---- a bed at rest ---------------------------------------------------------------------------------------------------
+// ---- a bed at rest
+// ---------------------------------------------------------------------------------------------------
 
 struct Bed {
   Case c;
@@ -139,8 +142,8 @@ struct Bed {
     for (int k = 0; k < 8; ++k)
       for (int j = 0; j < 5; ++j)
         for (int i = 0; i < 5; ++i) {
-          const Vec3 x{1.2 * kRadius + pitch * i + 0.1 * kRadius * (k % 3), 1.2 * kRadius + pitch * j + 0.07 * kRadius * (k % 2 + i % 2),
-                       1.5 * kRadius + pitch * k};
+          const Vec3 x{1.2 * kRadius + pitch * i + 0.1 * kRadius * (k % 3),
+                       1.2 * kRadius + pitch * j + 0.07 * kRadius * (k % 2 + i % 2), 1.5 * kRadius + pitch * k};
           bodies.push_back(sphere(c, static_cast<uint32_t>((i + j + k) % 2), x));
         }
     return bodies;

@@ -1,6 +1,10 @@
 // Impacts of two bodies: a sphere on a wall, two spheres. The run ends when they have parted.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "tests/laws/law_test.h"
 
 namespace scree {
@@ -38,9 +42,8 @@ inline ImpactOutcome run_impact(const Case& c, const std::vector<ParticleState>&
       last_change = k;
     }
     result.largest_force = std::max(result.largest_force, now[0].mass * norm(change) / c.time.step);
-    const double gap = now.size() == 2
-                           ? norm(now[0].position - now[1].position) - now[0].radius - now[1].radius
-                           : now[0].position.z - now[0].radius;
+    const double gap = now.size() == 2 ? norm(now[0].position - now[1].position) - now[0].radius - now[1].radius
+                                       : now[0].position.z - now[0].radius;
     result.largest_overlap = std::max(result.largest_overlap, -gap);
     before = now[0];
     result.parted = last_change >= 0 && k - last_change > 20;
@@ -56,7 +59,8 @@ inline ImpactOutcome run_impact(const Case& c, const std::vector<ParticleState>&
 
 // The step that gives a head-on impact at this speed kStepsPerContact steps.
 inline double impact_step(const ImpactBodies& b, bool wall, double speed, double steps_per_contact) {
-  const ElasticModuli i{b.grain.youngs_modulus, b.grain.poisson_ratio}, j{b.other.youngs_modulus, b.other.poisson_ratio};
+  const ElasticModuli i{b.grain.youngs_modulus, b.grain.poisson_ratio},
+      j{b.other.youngs_modulus, b.other.poisson_ratio};
   const double youngs = pair_constants(i, j, 1, 0, 0).effective_youngs, mass = sphere_mass(b.radius, b.grain.density);
   const HertzImpact hertz{wall ? mass : mass / 2, wall ? b.radius : b.radius / 2, youngs, speed};
   return hertz.contact_time() / steps_per_contact;

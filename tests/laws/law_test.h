@@ -16,9 +16,7 @@ class LawTest : public testing::TestWithParam<Precision> {
   void SetUp() override { set_thread_count(1); }  // a few particles: threads would only wait for each other
 
   // What arithmetic alone may cost a quantity that a law keeps exactly: `steps` roundings of its storage type.
-  static double round_off(double steps = 1) {
-    return steps * (GetParam() == Precision::reference ? 0x1p-53 : 0x1p-24);
-  }
+  static double round_off(double steps = 1) { return steps * (GetParam() == Precision::reference ? 0x1p-53 : 0x1p-24); }
 };
 
 inline std::string precision_name(const testing::TestParamInfo<Precision>& info) {

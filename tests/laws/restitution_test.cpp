@@ -43,8 +43,7 @@ TEST_P(Restitution, SphereOnFibre) {
       Case c = impact_case(bodies, step, GetParam());
       const Segment axis{{-0.01, 0, -0.5 * thickness}, {end, 0, -0.5 * thickness}};
       add_solid(c, fibre_network({&axis, 1}, thickness, {1, 0}));
-      const ImpactOutcome out =
-          run_impact(c, {sphere(c, 0, {0, 0, kRadius + 0.37 * step * kSpeed}, {0, 0, -kSpeed})});
+      const ImpactOutcome out = run_impact(c, {sphere(c, 0, {0, 0, kRadius + 0.37 * step * kSpeed}, {0, 0, -kSpeed})});
       EXPECT_NEAR(out.first.velocity.z / kSpeed, e, 5e-4) << e << ", fibre ends at " << end;
       EXPECT_NEAR(out.first.velocity.x, 0, 1e-6 * kSpeed);
     }
@@ -59,16 +58,17 @@ TEST_P(Restitution, ErrorShrinksWithTheTimeStep) {
 }
 
 // e = 0 is the critically damped limit: the sphere stays in contact and creeps out.
-TEST_P(Restitution, NoReboundForZero) {
-  EXPECT_NEAR(rebound_from_wall(0, GetParam()), 0, 2e-3);
-}
+TEST_P(Restitution, NoReboundForZero) { EXPECT_NEAR(rebound_from_wall(0, GetParam()), 0, 2e-3); }
 
 // Three kinds and two wall materials in one run, every pair with its own restitution, far from one another.
 TEST_P(Restitution, EveryPairOfMaterialsHasItsOwn) {
   const double particles[3][3] = {{0.9, 0.8, 0.7}, {0.8, 0.6, 0.5}, {0.7, 0.5, 0.3}};
   const double walls[3][2] = {{0.95, 0.2}, {0.4, 0.85}, {0.65, 0.75}};
-  const Material materials[5] = {{"a", 2500, 1e7, 0.3}, {"b", 1200, 3e7, 0.2}, {"c", 4000, 6e6, 0.4},
-                                 {"wall 1", 0, 1e8, 0.3}, {"wall 2", 0, 5e6, 0.1}};
+  const Material materials[5] = {{"a", 2500, 1e7, 0.3},
+                                 {"b", 1200, 3e7, 0.2},
+                                 {"c", 4000, 6e6, 0.4},
+                                 {"wall 1", 0, 1e8, 0.3},
+                                 {"wall 2", 0, 5e6, 0.1}};
   const double radii[3] = {0.002, 0.001, 0.003};
   Case c = empty_case(1e-7, GetParam());
   for (const Material& m : materials) add_material(c, m);
@@ -98,7 +98,8 @@ TEST_P(Restitution, EveryPairOfMaterialsHasItsOwn) {
   for (uint32_t i = 0; i < 3; ++i)
     for (uint32_t j = 0; j < 3; ++j) {
       const size_t k = 2 * (3 * i + j);
-      EXPECT_NEAR((after[k + 1].velocity.x - after[k].velocity.x) / (2 * kSpeed), particles[i][j], 5e-4) << i << " on " << j;
+      EXPECT_NEAR((after[k + 1].velocity.x - after[k].velocity.x) / (2 * kSpeed), particles[i][j], 5e-4)
+          << i << " on " << j;
     }
   for (uint32_t i = 0; i < 3; ++i)
     for (uint32_t w = 0; w < 2; ++w)

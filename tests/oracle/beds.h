@@ -114,7 +114,9 @@ inline Vec3 periods(const Case& c) {
 // A small lattice, one cell wide, with a channel round it, a hopper above, and a lid at its top (z = 0). Walls, in
 // order: lattice, channel, hopper, lid.
 inline void add_small_lattice(Case& c) {
-  const auto add = [&](const Primitives& p) { c.solid.primitives.insert(c.solid.primitives.end(), p.begin(), p.end()); };
+  const auto add = [&](const Primitives& p) {
+    c.solid.primitives.insert(c.solid.primitives.end(), p.begin(), p.end());
+  };
   c.solid.walls = {"lattice", "channel", "hopper", "lid"};
   add(fibre_primitives(octet_lattice(0.005, {1, 1, 2}, {-0.0025, -0.0025, -0.01}), 4e-4, {1, 0}));
   add(channel({{-0.0025, -0.0025, -0.01}, {0.0025, 0.0025, 0}}, {1, 1}));

@@ -21,9 +21,11 @@ TEST(History, OfACollisionDoesNotDependOnRebuilds) {
     for (int k = 0; k < 700; ++k) {
       const Vec3 x = 2e-3 * Vec3{double(k % 9), double(k / 9 % 9), double(k / 81)};
       const Vec3 along = unit(random.in({{-1, -1, -1}, {1, 1, 1}})), across = perpendicular_to(along);
-      const double speed = random.between(0.01, 0.2), a = random.between(0.5, 1) * kRadius, b = random.between(0.5, 1) * kRadius;
+      const double speed = random.between(0.01, 0.2), a = random.between(0.5, 1) * kRadius,
+                   b = random.between(0.5, 1) * kRadius;
       grains.push_back(grain(x, a, speed * along));
-      grains.push_back(grain(x + (a + b + random.between(0, 5e-5)) * along + random.between(-0.7, 0.7) * a * across, b, -speed * along));
+      grains.push_back(grain(x + (a + b + random.between(0, 5e-5)) * along + random.between(-0.7, 0.7) * a * across, b,
+                             -speed * along));
       for (int g = 0; g < 2; ++g) grains[grains.size() - 1 - g].spin = random.in({{-300, -300, -300}, {300, 300, 300}});
     }
     uint64_t hash = 0, most = 0, least = ~0ull;
@@ -49,7 +51,8 @@ Case slope_case(double angle) {
   c.gravity = {9.81 * std::sin(angle), 0, -9.81 * std::cos(angle)};
   c.solid.walls = {"slope", "far wall"};
   c.solid.primitives = rectangle({-0.02, -0.01, 0}, {0.04, 0, 0}, {0, 0.02, 0}, {1, 0});
-  for (const Primitive& p : rectangle({-0.02, -0.01, 0.018}, {0.04, 0, 0}, {0, 0.02, 0}, {1, 1})) c.solid.primitives.push_back(p);
+  for (const Primitive& p : rectangle({-0.02, -0.01, 0.018}, {0.04, 0, 0}, {0, 0.02, 0}, {1, 1}))
+    c.solid.primitives.push_back(p);
   return c;
 }
 
@@ -77,7 +80,8 @@ TEST(History, OfASphereStuckOnASlopeOutlivesRebuilds) {
 std::vector<ParticleState> pyramid(const Vec3& at) {
   std::vector<ParticleState> four;
   const double side = 2 * kRadius, ring = side / std::sqrt(3.0);
-  for (int k = 0; k < 3; ++k) four.push_back(grain(at + Vec3{ring * std::cos(2 * M_PI * k / 3), ring * std::sin(2 * M_PI * k / 3), kRadius}));
+  for (int k = 0; k < 3; ++k)
+    four.push_back(grain(at + Vec3{ring * std::cos(2 * M_PI * k / 3), ring * std::sin(2 * M_PI * k / 3), kRadius}));
   four.push_back(grain(at + Vec3{0, 0, kRadius + side * std::sqrt(2.0 / 3.0)}));
   return four;
 }
@@ -164,7 +168,8 @@ TEST(History, OfAShearedBedDoesNotDependOnTheSkin) {
   }
   RecordProperty("position_difference_m", fmt::format("{:.3g}", position));
   RecordProperty("velocity_difference_m_per_s", fmt::format("{:.3g}", velocity));
-  fmt::print("sheared bed: positions differ by {:.3g} m, velocities by {:.3g} m/s, moved {:.3g} m\n", position, velocity, moved);
+  fmt::print("sheared bed: positions differ by {:.3g} m, velocities by {:.3g} m/s, moved {:.3g} m\n", position,
+             velocity, moved);
   EXPECT_GT(moved, 1e-5);
   EXPECT_LT(position, 1e-9);
   EXPECT_LT(velocity, 1e-5);

@@ -27,7 +27,8 @@ Trace drain(Case c, const EngineOptions& options) {
     auto grains = LooseBed{4, 4, 12, 1.2e-4, 1.5e-4}.particles({-0.5 * 4 * 3.15e-4, -0.5 * 4 * 3.15e-4, z}, 3);
     if (z < -0.005)  // inside the lattice: where there is room
       std::erase_if(grains, [&](const ParticleState& g) {
-        return std::ranges::any_of(c.solid.primitives, [&](const Primitive& p) { return distance(p, g.position) < g.radius; });
+        return std::ranges::any_of(c.solid.primitives,
+                                   [&](const Primitive& p) { return distance(p, g.position) < g.radius; });
       });
     else
       for (ParticleState& g : grains) g.position.z += 0.002;
@@ -78,7 +79,8 @@ TEST(SolidSearch, ByEmbreeAndByBruteForceAgreeInAPeriodicBox) {
 }
 
 // Velocities after one short step from rest tell the forces.
-std::vector<ParticleState> after_one_step(const Case& c, const std::vector<std::vector<ParticleState>>& insertions, bool step_between) {
+std::vector<ParticleState> after_one_step(const Case& c, const std::vector<std::vector<ParticleState>>& insertions,
+                                          bool step_between) {
   const auto engine = make_engine(c);
   for (const auto& particles : insertions) {
     engine->insert(particles);
@@ -93,7 +95,8 @@ TEST(SolidSearch, LargeParticlesThatComeLaterFeelTheSolidAcrossAPeriodicBorder) 
   Case c = ceramic_case({{0, 0, 0}, {0.01, 0.01, 0.01}}, {'x'});
   c.solid.walls = {"fibre"};
   const double away = 0.6e-3, large = 1e-3;
-  c.solid.primitives = fibre_network(std::vector{Segment{{0.01 - away, 2e-3, 5e-3}, {0.01 - away, 8e-3, 5e-3}}}, 1e-4, {1, 0});
+  c.solid.primitives =
+      fibre_network(std::vector{Segment{{0.01 - away, 2e-3, 5e-3}, {0.01 - away, 8e-3, 5e-3}}}, 1e-4, {1, 0});
   const ParticleState small = grain({5e-3, 5e-3, 2e-3}, 1e-4);
   const ParticleState late = grain({large + 5e-5 - away - 1e-5, 5e-3, 5e-3}, large);  // 10 um into the fibre's image
   const auto together = after_one_step(c, {{small, late}}, false), apart = after_one_step(c, {{small}, {late}}, true);
@@ -113,7 +116,8 @@ TEST(SolidSearch, ParticlesNearManyPrimitivesOfDifferentKindsDoNotDisturbEachOth
     c.solid.primitives.push_back({Segment{star, star + 1e-3 * a}, 1e-5, 1, 0});
     c.solid.primitives.push_back({Quad{{fan, fan + 1e-3 * a, fan + 1e-3 * b, fan + 1e-3 * b}}, 0, 1, 1});
   }
-  const ParticleState on_star = grain(star + Vec3{2e-5, 3e-5, 0.99 * kRadius}), on_fan = grain(fan + Vec3{2e-5, 3e-5, 0.98 * kRadius});
+  const ParticleState on_star = grain(star + Vec3{2e-5, 3e-5, 0.99 * kRadius}),
+                      on_fan = grain(fan + Vec3{2e-5, 3e-5, 0.98 * kRadius});
   const auto both = after_one_step(c, {{on_star, on_fan}}, false);
   const auto first = after_one_step(c, {{on_star}}, false), second = after_one_step(c, {{on_fan}}, false);
   ASSERT_GT(first[0].velocity.z, 0);
