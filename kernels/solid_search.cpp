@@ -30,11 +30,24 @@ class Search {
     std::stable_sort(near_.begin(), near_.end(), [](const Neighbourhood& a, const Neighbourhood& b) {
       return std::lexicographical_compare(b.counts, b.counts + 3, a.counts, a.counts + 3);
     });
-    for (size_t k = 0; k < near_.size(); k += kBlock) lay_block(k, std::min(near_.size(), k + kBlock));
+    for (size_t k = 0; k < near_.size();) {
+      const size_t end = end_of_block(k);
+      lay_block(k, end);
+      k = end;
+    }
     return t_.count;
   }
 
  private:
+  size_t end_of_block(size_t begin) const {
+    uint32_t most[3] = {0, 0, 0};
+    size_t k = begin;
+    for (; k < std::min(near_.size(), begin + kBlock); ++k) {
+      for (int kind = 0; kind < 3; ++kind) most[kind] = std::max<uint32_t>(most[kind], near_[k].counts[kind]);
+      if (most[0] + most[1] + most[2] > kMaxSlots) break;
+    }
+    return k;
+  }
   Vec3 position(uint32_t k) const { return {t_.particles[k].x, t_.particles[k].y, t_.particles[k].z}; }
 
   // One query for the particles of a cell, then the exact distance for each.

@@ -108,7 +108,7 @@ void Domain<Real>::insert(std::span<const ParticleState> particles) {
     p.wx = static_cast<Real>(s.spin.x), p.wy = static_cast<Real>(s.spin.y), p.wz = static_cast<Real>(s.spin.z);
     p.radius = static_cast<Real>(s.radius), p.inverse_mass = static_cast<Real>(1 / s.mass);
     now_[count_++] = p;
-    max_radius_ = std::max(max_radius_, s.radius);
+    if (s.radius > max_radius_) max_radius_ = s.radius, index_.reset();
     min_radius_ = min_radius_ == 0 ? s.radius : std::min(min_radius_, s.radius);
     max_speed_ = std::max(max_speed_, norm(s.velocity));
   }
@@ -164,6 +164,9 @@ template <class Real>
 void Domain<Real>::choose_skin() {
   const double way = 2 * kStepsPerRebuild * max_speed_ * settings_.dt;
   skin_ = fixed_skin_ > 0 ? fixed_skin_ : std::clamp(way, kSkinAtRest * max_radius_, kSkinMost * max_radius_);
+  for (const double period : settings_.period)
+    if (period > 0) skin_ = std::min(skin_, 0.4999 * period - 2 * max_radius_);
+  if (skin_ <= 0 && count_ > 0) throw RunError("a periodic axis is shorter than twice the largest diameter");
   inner_ = std::min(kInnerShare * max_radius_, skin_);
 }
 
@@ -203,7 +206,7 @@ void Domain<Real>::check_and_wrap() {
         if (periodic_[a]) *x[a] -= settings_.period[a] * std::floor((*x[a] - low[a]) / settings_.period[a]);
         else outside |= !(*x[a] >= low[a] && *x[a] <= high[a]);
       }
-      if (outside && !(leaves_ && leaves_(state_of(p)) >= 0)) lost.store(std::min(lost.load(), k));
+      if (outside && !(leaves_ && leaves_(state_of(p)) >= 0)) lost = k;
     }
   });
   if (lost < count_) {
@@ -369,11 +372,14 @@ void Domain<Real>::fail_step(const ChunkOutcome& outcome) const {
   for (size_t k = 0; k < count_; ++k) {
     const ParticleState s = state(k);
     if (norm(s.velocity) <= settings_.speed_limit) continue;
+    if (std::isnan(norm(s.velocity)))
+      throw RunError(fmt::format("the velocity of particle {} is not a number at t = {:.6g} s, after a largest overlap of {:.3g} radii: use a smaller [time] step (now {:.4g} s)",
+                                 s.id, time(), outcome.max_pair_overlap, settings_.dt));
     throw RunError(fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s at t = {:.6g} s, more than {:.4g} m/s = {} radii in a step: "
                                "use a smaller [time] step (now {:.4g} s)",
                                s.id, s.position.x, s.position.y, s.position.z, norm(s.velocity), time(), settings_.speed_limit, kMaxTravelShare, settings_.dt));
   }
-  throw RunError(fmt::format("a particle's velocity is not a number at t = {:.6g} s", time()));
+  throw RunError(fmt::format("a particle was too fast at t = {:.6g} s", time()));
 }
 
 // ---- what others read ------------------------------------------------------------------------------------------------

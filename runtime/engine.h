@@ -19,7 +19,7 @@ namespace scree {
 
 // A particle as the outside sees it. Velocities are half a step behind positions (leapfrog), except before the first step.
 struct ParticleState {
-  Vec3 position, velocity, spin;
+  Vec3 position{}, velocity{}, spin{};
   double radius = 0, mass = 0;
   uint32_t kind = 0;
   uint64_t id = 0;  // given by the engine at insertion

@@ -301,7 +301,7 @@ TEST(Neighbours, AfterInsertionsAndRemovalsAreAllFound) {
 
 struct Listed {
   std::map<std::pair<uint32_t, uint32_t>, std::set<uint32_t>> owners;  // pair of indices, the chunks that list it
-  std::set<std::pair<uint32_t, uint32_t>> active;
+  std::map<std::pair<uint32_t, uint32_t>, size_t> active;              // by how many chunks
 };
 
 struct SearchScene {
@@ -341,7 +341,7 @@ struct SearchScene {
       for (uint32_t k = 0; k < contacts.pairs; ++k) {
         const auto& block = contacts.blocks[k / kBlock];
         take(block.i[k % kBlock], block.j[k % kBlock]);
-        result.active.insert(std::minmax(block.i[k % kBlock], block.j[k % kBlock]));
+        ++result.active[std::minmax(block.i[k % kBlock], block.j[k % kBlock])];
       }
       for (const NearPair& pair : contacts.near) take(pair.i, pair.j);
       for (uint32_t k = contacts.pairs; k < contacts.blocks.size() * kBlock; ++k) {
@@ -376,11 +376,14 @@ void expect_search_right(SearchScene scene, const std::string& what) {
           continue;
         }
         ASSERT_LE(gap, scene.skin + extra) << what << ", " << isa;
+        // At the very edge, where rounding decides, one chunk may list a pair and the other not.
         const std::set<uint32_t> owners{a / scene.chunk, b / scene.chunk};
-        ASSERT_EQ(found->second, owners) << what << ", " << isa << ": each chunk with one of the two owns the pair";
-        const bool active = listed.active.contains({a, b});
-        ASSERT_TRUE(active || gap > scene.inner) << what << ", " << isa;
-        ASSERT_TRUE(!active || gap <= scene.inner + extra) << what << ", " << isa;
+        ASSERT_TRUE(found->second == owners || gap > scene.skin)
+            << what << ", " << isa << ": each chunk with one of the two owns the pair; gap " << gap;
+        const auto active = listed.active.find({a, b});
+        const size_t active_owners = active == listed.active.end() ? 0 : active->second;
+        ASSERT_TRUE(active_owners == owners.size() || gap > scene.inner) << what << ", " << isa;
+        ASSERT_TRUE(active_owners == 0 || gap <= scene.inner + extra) << what << ", " << isa;
       }
     EXPECT_GT(wanted, 0u);
   }

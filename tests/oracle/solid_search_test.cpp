@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "kernels/contacts.h"
 #include "tests/oracle/beds.h"
 
 namespace scree {
@@ -109,7 +110,7 @@ TEST(SolidSearch, ParticlesNearManyPrimitivesOfDifferentKindsDoNotDisturbEachOth
   Case c = ceramic_case({{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}});
   c.solid.walls = {"star", "fan"};
   const Vec3 star{-5e-3, 0, 0}, fan{5e-3, 0, 0};
-  const int each = 30;
+  const int each = kMaxSlots * 5 / 8;  // one alone fits, both in one block would not
   for (int k = 0; k < each; ++k) {
     const double angle = 2 * M_PI * k / each, next = angle + 2 * M_PI / each;
     const Vec3 a{std::cos(angle), std::sin(angle), 0}, b{std::cos(next), std::sin(next), 0};
