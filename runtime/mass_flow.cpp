@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kBins = 40;                 // of the stretch that is searched
 constexpr int kFewestBins = kBins / 5;
-constexpr double kSteadyTolerance = 0.08;  // of the mean, between the window's thirds
+constexpr int kParts = 5;                  // of a window, each of which must flow like the whole:
+constexpr double kSteadyTolerance = 0.08;  // of the mean; catches the surge when a lid opens, lets scatter pass
 constexpr int kErrorBins = 8;             // independent stretches for the standard error
 
 double interpolate(const std::vector<FlowSample>& samples, double t) {
@@ -26,10 +27,10 @@ double rate_between(const std::vector<FlowSample>& samples, double a, double b) 
 }
 
 bool is_steady(const std::vector<FlowSample>& samples, double a, double b) {
-  const double mean = rate_between(samples, a, b), third = (b - a) / 3;
+  const double mean = rate_between(samples, a, b), part = (b - a) / kParts;
   if (mean <= 0) return false;
-  for (int k = 0; k < 3; ++k)
-    if (std::abs(rate_between(samples, a + k * third, a + (k + 1) * third) - mean) > kSteadyTolerance * mean) return false;
+  for (int k = 0; k < kParts; ++k)
+    if (std::abs(rate_between(samples, a + k * part, a + (k + 1) * part) - mean) > kSteadyTolerance * mean) return false;
   return true;
 }
 

@@ -16,7 +16,7 @@ SteadyFlow silo_discharge(double diameter, double mass) {
   const RunResult r = run_to(out, "examples/orifice_silo.toml",
                              {set("wall.box.radius", 0.009), set("wall.bottom.outer_radius", 0.009), set("region.inside.radius", 0.0084),
                               set("wall.bottom.inner_radius", diameter / 2), set("wall.plug.radius", diameter / 2), set("stage.fill.mass", mass),
-                              "time.rayleigh_fraction=0.3", "stage.settle.time=0.08", "stage.drain.discharged_fraction=0.6"});
+                              "time.rayleigh_fraction=0.3", "stage.settle.time=0.08", "stage.drain.discharged_fraction=0.5"});
   EXPECT_EQ(r.status, RunStatus::done) << r.message;
   EXPECT_TRUE(r.steady.has_value()) << "no plateau for an orifice of " << diameter << " m";
   return r.steady.value_or(SteadyFlow{});
@@ -36,8 +36,8 @@ TEST(Beverloo, discharge_scales_with_the_orifice_to_the_power_five_halves) {
 }
 
 TEST(Beverloo, discharge_does_not_depend_on_the_height_of_the_fill) {
-  const SteadyFlow low = silo_discharge(7.5e-3, 7e-3), high = silo_discharge(7.5e-3, 14e-3);
-  std::printf("7 g: %.3f +- %.3f g/s, 14 g: %.3f +- %.3f g/s\n", 1e3 * low.rate, 1e3 * low.standard_error, 1e3 * high.rate, 1e3 * high.standard_error);
+  const SteadyFlow low = silo_discharge(7.5e-3, 6e-3), high = silo_discharge(7.5e-3, 12e-3);
+  std::printf("6 g: %.3f +- %.3f g/s, 12 g: %.3f +- %.3f g/s\n", 1e3 * low.rate, 1e3 * low.standard_error, 1e3 * high.rate, 1e3 * high.standard_error);
   EXPECT_NEAR(high.rate / low.rate, 1, 0.1);  // a liquid's would grow by the root of two
 }
 
