@@ -15,26 +15,53 @@ struct Vec {
 
 using Vec3 = Vec<double>;
 
-template <class T> inline Vec<T> operator+(const Vec<T>& a, const Vec<T>& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-template <class T> inline Vec<T> operator-(const Vec<T>& a, const Vec<T>& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-template <class T> inline Vec<T> operator-(const Vec<T>& a) { return {-a.x, -a.y, -a.z}; }
-template <class T> inline Vec<T> operator*(const T& s, const Vec<T>& a) { return {s * a.x, s * a.y, s * a.z}; }
-template <class T> inline Vec<T> operator*(const Vec<T>& a, const T& s) { return s * a; }
-template <class T> inline Vec<T>& operator+=(Vec<T>& a, const Vec<T>& b) { return a = a + b; }
-template <class T> inline Vec<T>& operator-=(Vec<T>& a, const Vec<T>& b) { return a = a - b; }
+template <class T>
+inline Vec<T> operator+(const Vec<T>& a, const Vec<T>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class T>
+inline Vec<T> operator-(const Vec<T>& a, const Vec<T>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class T>
+inline Vec<T> operator-(const Vec<T>& a) {
+  return {-a.x, -a.y, -a.z};
+}
+template <class T>
+inline Vec<T> operator*(const T& s, const Vec<T>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+template <class T>
+inline Vec<T> operator*(const Vec<T>& a, const T& s) {
+  return s * a;
+}
+template <class T>
+inline Vec<T>& operator+=(Vec<T>& a, const Vec<T>& b) {
+  return a = a + b;
+}
+template <class T>
+inline Vec<T>& operator-=(Vec<T>& a, const Vec<T>& b) {
+  return a = a - b;
+}
 // Fused where it is written so, and nowhere else: the bits do not depend on the compiler. Both change sign exactly when
 // one factor does, which the two copies of a pair's contact rely on (kernels/contacts.h).
-template <class T> inline T dot(const Vec<T>& a, const Vec<T>& b) { return fma(a.z, b.z, fma(a.y, b.y, a.x * b.x)); }
-template <class T> inline Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
+template <class T>
+inline T dot(const Vec<T>& a, const Vec<T>& b) {
+  return fma(a.z, b.z, fma(a.y, b.y, a.x * b.x));
+}
+template <class T>
+inline Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
   return {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
 }
-template <class T> inline Vec<T> select_vec(const auto& mask, const Vec<T>& yes, const Vec<T>& no) {
+template <class T>
+inline Vec<T> select_vec(const auto& mask, const Vec<T>& yes, const Vec<T>& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
 inline Vec3 unit(const Vec3& a) { return (1.0 / norm(a)) * a; }
 
-// A fixed unit vector perpendicular to the unit vector `axis`: the coordinate axis furthest from it, made perpendicular.
+// A fixed unit vector perpendicular to the unit vector `axis`: the coordinate axis furthest from it, made
+// perpendicular.
 inline Vec3 perpendicular_to(const Vec3& axis) {
   const double x = std::abs(axis.x), y = std::abs(axis.y), z = std::abs(axis.z);
   const Vec3 start = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};

@@ -1,5 +1,5 @@
-// A fixed-capacity array of plain values whose memory is not touched before it is used, so that the threads that fill it
-// decide where its pages lie.
+// A fixed-capacity array of plain values whose memory is not touched before it is used, so that the threads that fill
+// it decide where its pages lie.
 #pragma once
 
 #include <cstddef>

@@ -43,7 +43,8 @@ void CellGrid::lay(const Bounds& box, const double period[3], double min_cell, s
       count[a] = std::max(1.0, period[a] > 0 ? std::floor(length / cell) : std::floor(length / cell) + 1);
       product *= count[a];
     }
-    const bool fits = product <= static_cast<double>(max_cells) && *std::max_element(count, count + 3) <= kMaxCellsPerAxis;
+    const bool fits =
+        product <= static_cast<double>(max_cells) && *std::max_element(count, count + 3) <= kMaxCellsPerAxis;
     if (!fits) continue;
     for (int a = 0; a < 3; ++a) {
       n_[a] = static_cast<uint32_t>(count[a]);
@@ -65,8 +66,8 @@ std::array<uint32_t, 3> CellGrid::cell_of(const Vec3& x) const {
   return c;
 }
 
-bool CellGrid::neighbour(const std::array<uint32_t, 3>& c, const std::array<int, 3>& offset, std::array<uint32_t, 3>& other,
-                         Vec3& shift) const {
+bool CellGrid::neighbour(const std::array<uint32_t, 3>& c, const std::array<int, 3>& offset,
+                         std::array<uint32_t, 3>& other, Vec3& shift) const {
   double moved[3] = {0, 0, 0};
   for (int a = 0; a < 3; ++a) {
     int64_t at = int64_t{c[a]} + offset[a];

@@ -1,5 +1,5 @@
-// A dense grid of cells over the particles' bounding box. Particles are kept in Morton order of their cells, so a cell is
-// a range of indices and neighbouring cells are mostly near in memory.
+// A dense grid of cells over the particles' bounding box. Particles are kept in Morton order of their cells, so a cell
+// is a range of indices and neighbouring cells are mostly near in memory.
 #pragma once
 
 #include <array>
@@ -17,7 +17,9 @@ class CellGrid {
   void lay(const Bounds& box, const double period[3], double min_cell, size_t max_cells);
 
   std::array<uint32_t, 3> cell_of(const Vec3& x) const;
-  uint32_t morton(const std::array<uint32_t, 3>& c) const { return spread_[0][c[0]] | spread_[1][c[1]] | spread_[2][c[2]]; }
+  uint32_t morton(const std::array<uint32_t, 3>& c) const {
+    return spread_[0][c[0]] | spread_[1][c[1]] | spread_[2][c[2]];
+  }
   int morton_bits() const { return bits_; }
   size_t linear(const std::array<uint32_t, 3>& c) const { return (size_t{c[2]} * n_[1] + c[1]) * n_[0] + c[0]; }
   size_t size() const { return size_t{n_[0]} * n_[1] * n_[2]; }
@@ -27,9 +29,10 @@ class CellGrid {
   };
   std::vector<Range> ranges;  // by linear(); filled by the rebuild
 
-  // The cell `offset` away, at most one cell beyond the grid along an axis. Returns false outside the grid; `shift` is what must be added to
-  // positions in that cell to see them as neighbours across a periodic border (m).
-  bool neighbour(const std::array<uint32_t, 3>& c, const std::array<int, 3>& offset, std::array<uint32_t, 3>& other, Vec3& shift) const;
+  // The cell `offset` away, at most one cell beyond the grid along an axis. Returns false outside the grid; `shift` is
+  // what must be added to positions in that cell to see them as neighbours across a periodic border (m).
+  bool neighbour(const std::array<uint32_t, 3>& c, const std::array<int, 3>& offset, std::array<uint32_t, 3>& other,
+                 Vec3& shift) const;
 
   size_t bytes() const { return ranges.capacity() * sizeof(Range); }
 

@@ -43,7 +43,8 @@ template <class Real>
 inline void integrate(const ChunkTask<Real>& task, ChunkOutcome& outcome) {
   const StepSettings& s = *task.settings;
   const Real kick = static_cast<Real>(s.kick);
-  const Vec<Real> gravity_kick{static_cast<Real>(s.gravity[0] * s.kick), static_cast<Real>(s.gravity[1] * s.kick), static_cast<Real>(s.gravity[2] * s.kick)};
+  const Vec<Real> gravity_kick{static_cast<Real>(s.gravity[0] * s.kick), static_cast<Real>(s.gravity[1] * s.kick),
+                               static_cast<Real>(s.gravity[2] * s.kick)};
   const Real limit2 = static_cast<Real>(s.speed_limit * s.speed_limit);
   Real max_speed2 = 0;
   bool bad = false;

@@ -37,8 +37,8 @@ struct StepSettings {
   double gravity[3];  // m/s2
   double period[3];   // m; 0: not periodic
   bool limit_attraction;
-  bool check_near;    // promote near pairs before the forces
-  double inner;       // m: a near pair closer than this becomes active
+  bool check_near;     // promote near pairs before the forces
+  double inner;        // m: a near pair closer than this becomes active
   double speed_limit;  // m/s: a particle faster than this (or NaN) fails the step
 };
 

@@ -18,22 +18,22 @@ enum class RollingModel { none, cdt, epsd2 };
 // Touching bodies, seen from i. For a wall or fibre j has no spin, R* = R_i and m* = m_i.
 template <class T>
 struct Contact {
-  Vec<T> normal;            // unit, from j to i
-  T overlap;                // m, >= 0
-  T effective_radius;       // m
-  T effective_mass;         // kg
-  Vec<T> velocity;          // m/s, of i relative to j, centres (wall: its surface)
-  Vec<T> arm_spin;          // m/s, c_i w_i + c_j w_j, c the lever arms
-  Vec<T> rolling_spin;      // rad/s, w_i - w_j; wall: w_i c_i / (R_i - d)
+  Vec<T> normal;        // unit, from j to i
+  T overlap;            // m, >= 0
+  T effective_radius;   // m
+  T effective_mass;     // kg
+  Vec<T> velocity;      // m/s, of i relative to j, centres (wall: its surface)
+  Vec<T> arm_spin;      // m/s, c_i w_i + c_j w_j, c the lever arms
+  Vec<T> rolling_spin;  // rad/s, w_i - w_j; wall: w_i c_i / (R_i - d)
 };
 
 // What a pair of materials gives to the law; see pair_constants() for how it is made from moduli.
 template <class T>
 struct PairConstants {
-  T effective_youngs;     // E*, Pa
-  T effective_shear;      // G*, Pa
-  T normal_damping;       // -2 sqrt(5/6) b sqrt(2 E*), so that g_n = this * sqrt(s m*)
-  T tangential_damping;   // -2 sqrt(5/6) b sqrt(8 G*)
+  T effective_youngs;    // E*, Pa
+  T effective_shear;     // G*, Pa
+  T normal_damping;      // -2 sqrt(5/6) b sqrt(2 E*), so that g_n = this * sqrt(s m*)
+  T tangential_damping;  // -2 sqrt(5/6) b sqrt(8 G*)
   T sliding_friction;
   T rolling_friction;
 };
@@ -54,7 +54,8 @@ struct Reaction {
 
 // The tangential part: Mindlin's spring with history, cut by Coulomb's limit.
 template <class T>
-[[gnu::always_inline]] inline Vec<T> mindlin_friction(const Contact<T>& c, const T& k_t, const T& g_t, const T& limit, const T& dt, Vec<T>& xi) {
+[[gnu::always_inline]] inline Vec<T> mindlin_friction(const Contact<T>& c, const T& k_t, const T& g_t, const T& limit,
+                                                      const T& dt, Vec<T>& xi) {
   const Vec<T> v_t = c.velocity - dot(c.velocity, c.normal) * c.normal;
   const Vec<T> v_s = v_t + cross(c.normal, c.arm_spin);
   xi += dt * v_s;
@@ -69,8 +70,9 @@ template <class T>
 
 // Rolling friction torque M (physics: constant directional torque, and elastic-plastic spring without dashpot).
 template <RollingModel model, class T>
-[[gnu::always_inline]] inline Vec<T> rolling_friction(const Contact<T>& c, const PairConstants<T>& p, const T& elastic_force, const T& force,
-                               const T& k_t, const T& dt, Vec<T>& torque_old) {
+[[gnu::always_inline]] inline Vec<T> rolling_friction(const Contact<T>& c, const PairConstants<T>& p,
+                                                      const T& elastic_force, const T& force, const T& k_t, const T& dt,
+                                                      Vec<T>& torque_old) {
   if constexpr (model == RollingModel::cdt) {
     const T spin = sqrt(dot(c.rolling_spin, c.rolling_spin));
     const T size = select(spin > T(0), p.rolling_friction * elastic_force * c.effective_radius / spin, T(0));
@@ -93,8 +95,8 @@ template <RollingModel model, class T>
 
 // Hertz-Mindlin with history. `limit_attraction`: F_n >= 0 (LIGGGHTS's option limitForce; off there and here).
 template <RollingModel model, class T>
-[[gnu::always_inline]] inline Reaction<T> hertz_mindlin(const Contact<T>& c, const PairConstants<T>& p, const T& dt, bool limit_attraction,
-                                 ContactHistory<T>& history) {
+[[gnu::always_inline]] inline Reaction<T> hertz_mindlin(const Contact<T>& c, const PairConstants<T>& p, const T& dt,
+                                                        bool limit_attraction, ContactHistory<T>& history) {
   const T s = sqrt(c.effective_radius * c.overlap);
   const T root_sm = sqrt(s * c.effective_mass);
   const T k_n = T(4.0 / 3.0) * p.effective_youngs * s;

@@ -20,7 +20,8 @@ struct ChunkHistory {
   std::vector<uint32_t> first;  // chunk size + 1
   std::vector<HistoryEntry<Real>> entries;
 
-  // Fills from contacts listed twice in the same order: list(visit) calls visit(local particle, partner, history, stride).
+  // Fills from contacts listed twice in the same order: list(visit) calls visit(local particle, partner, history,
+  // stride).
   template <class List>
   void gather(uint32_t size, const List& list) {
     first.assign(size + 1, 0);
@@ -87,7 +88,8 @@ void list_live_solids(const ChunkContacts<Real>& contacts, uint32_t begin, const
       const SolidSlot<Real>& slot = contacts.slots[block.first_slot + s];
       const int kind = s < block.segments ? 0 : s < uint32_t{block.segments} + block.quads ? 1 : 2;
       for (int lane = 0; lane < kBlock; ++lane)
-        if (slot.live >> lane & 1u) visit(block.i[lane] - begin, identity(kind, slot.primitive[lane]), slot.history[0] + lane);
+        if (slot.live >> lane & 1u)
+          visit(block.i[lane] - begin, identity(kind, slot.primitive[lane]), slot.history[0] + lane);
     }
 }
 

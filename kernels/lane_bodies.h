@@ -16,7 +16,8 @@ struct Bodies {
 };
 
 template <class L>
-[[gnu::always_inline]] inline Bodies<L> gather_bodies(const Particle<typename L::Real>* particles, const uint32_t* index) {
+[[gnu::always_inline]] inline Bodies<L> gather_bodies(const Particle<typename L::Real>* particles,
+                                                      const uint32_t* index) {
   using Real = typename L::Real;
   const double* positions[L::width];
   const Real* motions[L::width];
@@ -46,12 +47,16 @@ template <class L>
 }
 
 template <class L>
-[[gnu::always_inline]] inline Vec<typename L::F> narrow(const Vec<typename L::D>& a) { return {L::narrow(a.x), L::narrow(a.y), L::narrow(a.z)}; }
+[[gnu::always_inline]] inline Vec<typename L::F> narrow(const Vec<typename L::D>& a) {
+  return {L::narrow(a.x), L::narrow(a.y), L::narrow(a.z)};
+}
 
 // Overlap of two spheres from their squared distance without cancellation (engine.md, point 6):
 // R - r = (R^2 - r^2) / (R + r), the numerator in double, R the sum of the radii formed in double.
 template <class L>
-[[gnu::always_inline]] inline typename L::F overlap_from(const typename L::D& radius_sum, const typename L::D& distance2, const typename L::F& distance) {
+[[gnu::always_inline]] inline typename L::F overlap_from(const typename L::D& radius_sum,
+                                                         const typename L::D& distance2,
+                                                         const typename L::F& distance) {
   return L::narrow(fma(radius_sum, radius_sum, -distance2)) / (L::narrow(radius_sum) + distance);
 }
 
@@ -67,16 +72,20 @@ template <class L>
   L::store(m.x, p + 3 * kBlock), L::store(m.y, p + 4 * kBlock), L::store(m.z, p + 5 * kBlock);
 }
 template <class F>
-[[gnu::always_inline]] inline ContactHistory<F> select_history(const auto& mask, const ContactHistory<F>& yes, const ContactHistory<F>& no) {
-  return {select_vec(mask, yes.tangential_displacement, no.tangential_displacement), select_vec(mask, yes.rolling_torque, no.rolling_torque)};
+[[gnu::always_inline]] inline ContactHistory<F> select_history(const auto& mask, const ContactHistory<F>& yes,
+                                                               const ContactHistory<F>& no) {
+  return {select_vec(mask, yes.tangential_displacement, no.tangential_displacement),
+          select_vec(mask, yes.rolling_torque, no.rolling_torque)};
 }
 template <class F>
-[[gnu::always_inline]] inline ContactHistory<F> no_history() { return {{F(0), F(0), F(0)}, {F(0), F(0), F(0)}}; }
+[[gnu::always_inline]] inline ContactHistory<F> no_history() {
+  return {{F(0), F(0), F(0)}, {F(0), F(0), F(0)}};
+}
 
 // Adds force and torque to the rows of particles first..; indices outside the chunk go to the trash row.
 template <class L>
-[[gnu::always_inline]] inline void add_to_rows(const ChunkTask<typename L::Real>& task, const uint32_t* index, const Vec<typename L::F>& force,
-                        const Vec<typename L::F>& torque) {
+[[gnu::always_inline]] inline void add_to_rows(const ChunkTask<typename L::Real>& task, const uint32_t* index,
+                                               const Vec<typename L::F>& force, const Vec<typename L::F>& torque) {
   using F = typename L::F;
   typename L::Real* rows[L::width];
   const uint32_t size = task.end - task.begin;

@@ -18,14 +18,14 @@ struct SearchTask {
   const Particle<Real>* particles;  // in Morton order
   uint32_t begin, end, count;
   const CellGrid* grid;
-  double skin, inner;               // m, beyond touching: listed, active
-  const uint32_t* old_index;        // of each particle, for the history
+  double skin, inner;         // m, beyond touching: listed, active
+  const uint32_t* old_index;  // of each particle, for the history
   const HistoryTable<Real>* history;
-  ChunkContacts<Real>* contacts;    // cleared by the caller
+  ChunkContacts<Real>* contacts;  // cleared by the caller
 };
 
-// Round-off of float positions relative to a cell's corner is 1e-7 of a cell; the lists reach this much further, so that
-// no pair that the double test would list is missed.
+// Round-off of float positions relative to a cell's corner is 1e-7 of a cell; the lists reach this much further, so
+// that no pair that the double test would list is missed.
 inline constexpr float kSearchMargin = 1e-5f;
 
 // Particles of a cell's neighbourhood as float coordinates relative to `centre`.
@@ -43,7 +43,8 @@ struct Candidates {
   // Cells `low`..`high` and those around them. Particles begin..first are left out: their pairs with ours are listed
   // already (a pair inside a chunk is listed at its lower index).
   template <class Real>
-  void gather(const SearchTask<Real>& task, const std::array<uint32_t, 3>& low, const std::array<uint32_t, 3>& high, uint32_t first, const Vec3& centre) {
+  void gather(const SearchTask<Real>& task, const std::array<uint32_t, 3>& low, const std::array<uint32_t, 3>& high,
+              uint32_t first, const Vec3& centre) {
     size = 0;
     const auto span = [&](int axis) { return static_cast<int>(high[axis] - low[axis]) + 1; };
     for (int dz = -1; dz <= span(2); ++dz)
@@ -64,7 +65,8 @@ struct Candidates {
             index[size] = k;
           }
         }
-    for (size_t k = size; k < size + 16; ++k) x[k] = y[k] = z[k] = 1e6f, radius[k] = 0, index[k] = 0;  // padding, far away
+    for (size_t k = size; k < size + 16; ++k)
+      x[k] = y[k] = z[k] = 1e6f, radius[k] = 0, index[k] = 0;  // padding, far away
   }
 };
 
@@ -80,11 +82,13 @@ inline void emit_pair(const SearchTask<typename L::Real>& task, uint32_t i, uint
 
 // N lanes of floats, whatever the storage type.
 template <class L>
-inline void search_particle(const SearchTask<typename L::Real>& task, const Candidates& c, uint32_t i, const Vec3& centre) {
+inline void search_particle(const SearchTask<typename L::Real>& task, const Candidates& c, uint32_t i,
+                            const Vec3& centre) {
   using S = std::conditional_t<L::width == 1, ScalarLanes<float>, L>;
   using F = typename S::F;
   const auto& p = task.particles[i];
-  const F x(static_cast<float>(p.x - centre.x)), y(static_cast<float>(p.y - centre.y)), z(static_cast<float>(p.z - centre.z));
+  const F x(static_cast<float>(p.x - centre.x)), y(static_cast<float>(p.y - centre.y)),
+      z(static_cast<float>(p.z - centre.z));
   const float radius = static_cast<float>(p.radius);
   const F outer(static_cast<float>(radius + task.skin)), inner(static_cast<float>(radius + task.inner));
   const F margin(1 + kSearchMargin);
@@ -114,7 +118,7 @@ void search_chunk(const SearchTask<typename L::Real>& task) {
     std::array<uint32_t, 3> low = cell_of(first), high = low;
     const std::array<uint32_t, 3> family{low[0] / 2, low[1] / 2, low[2] / 2};
     uint32_t last = first;
-    for (auto cell = low; last < task.end; ) {
+    for (auto cell = low; last < task.end;) {
       for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], cell[a]), high[a] = std::max(high[a], cell[a]);
       last = std::min(task.end, task.grid->ranges[task.grid->linear(cell)].end);
       if (last == task.end) break;

@@ -12,9 +12,10 @@ namespace scree {
 
 namespace {
 
-constexpr double kTargetGap = 5e-3;  // of the radii: pushed this much further apart than touching, so that the end is reached
-constexpr double kPush = 0.55;       // of an overlap, for each of the two spheres: half, and a little over-relaxation
-constexpr double kListGap = 0.15;    // of the largest diameter: neighbours kept in the lists
+constexpr double kTargetGap =
+    5e-3;  // of the radii: pushed this much further apart than touching, so that the end is reached
+constexpr double kPush = 0.55;     // of an overlap, for each of the two spheres: half, and a little over-relaxation
+constexpr double kListGap = 0.15;  // of the largest diameter: neighbours kept in the lists
 constexpr size_t kPiece = 1024;
 
 class Packing {
@@ -55,7 +56,8 @@ class Packing {
     const double reach = 2 * max_radius_ * (1 + kTargetGap) + kListGap * max_radius_;
     grid_.lay(bounds, none, reach, std::max<size_t>(4096, 4 * all_.size()));
     packed_.resize(all_.size());
-    for (size_t k = 0; k < all_.size(); ++k) packed_[k] = uint64_t{grid_.morton(grid_.cell_of(all_[k].position))} << 32 | k;
+    for (size_t k = 0; k < all_.size(); ++k)
+      packed_[k] = uint64_t{grid_.morton(grid_.cell_of(all_[k].position))} << 32 | k;
     radix_sort(packed_, scratch_, grid_.morton_bits());
     for (size_t k = 0; k < packed_.size(); ++k) {
       CellGrid::Range& range = grid_.ranges[grid_.linear(grid_.cell_of(all_[packed_[k] & 0xffffffffu].position))];

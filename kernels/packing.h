@@ -16,7 +16,8 @@ struct PackedSphere {
   double radius;
 };
 
-// Moves a sphere's centre to where it is allowed: inside a region, clear of walls and fibres. Called from several threads.
+// Moves a sphere's centre to where it is allowed: inside a region, clear of walls and fibres. Called from several
+// threads.
 using Confine = std::function<Vec3(const Vec3& position, double radius)>;
 
 struct PackingOutcome {

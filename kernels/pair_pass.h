@@ -24,7 +24,8 @@ struct PairGeometry {
 };
 
 template <class L, bool periodic>
-[[gnu::always_inline]] inline PairGeometry<L> pair_geometry(const Bodies<L>& i, const Bodies<L>& j, const StepSettings& settings) {
+[[gnu::always_inline]] inline PairGeometry<L> pair_geometry(const Bodies<L>& i, const Bodies<L>& j,
+                                                            const StepSettings& settings) {
   using F = typename L::F;
   using D = typename L::D;
   Vec<D> d = i.position - j.position;
@@ -50,7 +51,8 @@ template <class L, bool periodic>
 }
 
 template <class L, class Traits>
-[[gnu::always_inline]] inline PairConstants<typename L::F> pair_constants_of(const ChunkTask<typename L::Real>& task, const uint32_t* i, const uint32_t* j) {
+[[gnu::always_inline]] inline PairConstants<typename L::F> pair_constants_of(const ChunkTask<typename L::Real>& task,
+                                                                             const uint32_t* i, const uint32_t* j) {
   using Real = typename L::Real;
   if constexpr (Traits::uniform) return broadcast_constants<L>(task.materials->row(0, 0));
   const Real* rows[L::width];
@@ -66,8 +68,9 @@ struct ForceTorque {
 
 // `width` contacts from `lane` on. Adds to the rows of i; returns what is for j.
 template <class L, class Traits>
-[[gnu::always_inline]] inline ForceTorque<typename L::F> pair_lanes(const ChunkTask<typename L::Real>& task, PairBlock<typename L::Real>& block, int lane,
-                                             typename L::F& max_share) {
+[[gnu::always_inline]] inline ForceTorque<typename L::F> pair_lanes(const ChunkTask<typename L::Real>& task,
+                                                                    PairBlock<typename L::Real>& block, int lane,
+                                                                    typename L::F& max_share) {
   using F = typename L::F;
   const uint32_t *index_i = block.i + lane, *index_j = block.j + lane;
   const Bodies<L> i = gather_bodies<L>(task.old_particles, index_i), j = gather_bodies<L>(task.old_particles, index_j);
@@ -104,8 +107,10 @@ inline double pair_pass(const ChunkTask<typename L::Real>& task) {
     if (b + 2 < count)  // the particles that the block after next will read
       for (int k = 0; k < kBlock; ++k) __builtin_prefetch(&task.old_particles[blocks[b + 2].j[k]]);
     ForceTorque<F> on_j[kBlock / L::width];
-    for (int k = 0; k < kBlock / L::width; ++k) on_j[k] = pair_lanes<L, Traits>(task, blocks[b], k * L::width, max_share);
-    for (int k = 0; k < kBlock / L::width; ++k) add_to_rows<L>(task, blocks[b].j + k * L::width, on_j[k].force, on_j[k].torque);
+    for (int k = 0; k < kBlock / L::width; ++k)
+      on_j[k] = pair_lanes<L, Traits>(task, blocks[b], k * L::width, max_share);
+    for (int k = 0; k < kBlock / L::width; ++k)
+      add_to_rows<L>(task, blocks[b].j + k * L::width, on_j[k].force, on_j[k].torque);
   }
   return L::max_lane(max_share);
 }

@@ -20,4 +20,13 @@ void parallel_for(size_t count, const Body& body) {
   for (size_t k = 0; k < count; ++k) body(k);
 }
 
+// body(k) for each k in [0, count), in pieces.
+template <class Body>
+void parallel_for_each(size_t count, const Body& body) {
+  constexpr size_t piece = 2048;
+  parallel_for((count + piece - 1) / piece, [&](size_t c) {
+    for (size_t k = c * piece; k < count && k < (c + 1) * piece; ++k) body(k);
+  });
+}
+
 }  // namespace scree

@@ -42,7 +42,8 @@ void radix_sort(std::vector<uint64_t>& packed, std::vector<uint64_t>& scratch, i
     positions_from_counts(histograms);
     parallel_for(pieces, [&](size_t piece) {
       Histogram next = histograms[piece];
-      for (size_t k = begin_of(piece); k < begin_of(piece + 1); ++k) scratch[next[digit_of(packed[k], shift)]++] = packed[k];
+      for (size_t k = begin_of(piece); k < begin_of(piece + 1); ++k)
+        scratch[next[digit_of(packed[k], shift)]++] = packed[k];
     });
     packed.swap(scratch);
   }

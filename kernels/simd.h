@@ -1,5 +1,5 @@
-// The only file that names the SIMD library (Google Highway, static dispatch: a translation unit's compiler flags choose
-// the instruction set, and its types live in a namespace of that set, so several sets link into one program).
+// The only file that names the SIMD library (Google Highway, static dispatch: a translation unit's compiler flags
+// choose the instruction set, and its types live in a namespace of that set, so several sets link into one program).
 //
 // Why Highway: transposes of 64-byte rows need shuffles, which std::experimental::simd does not have, and exact fused
 // multiply-adds and square roots, which xsimd 8 emulates on some targets. Everything used here is IEEE-exact (no
@@ -22,7 +22,8 @@
 
 namespace scree {
 
-// ---- one lane --------------------------------------------------------------------------------------------------------
+// ---- one lane
+// --------------------------------------------------------------------------------------------------------
 template <class RealType>
 struct ScalarLanes {
   static constexpr int width = 1;
@@ -54,7 +55,8 @@ struct ScalarLanes {
   }
 };
 
-// ---- the widest lanes that this translation unit's flags allow --------------------------------------------------------
+// ---- the widest lanes that this translation unit's flags allow
+// --------------------------------------------------------
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -68,21 +70,27 @@ using DoubleVec = hn::Vec<DoubleTag>;
 inline constexpr int kWidth = static_cast<int>(HWY_LANES(float));
 static_assert(kWidth >= 4, "lanes below 128 bits: use ScalarLanes");
 
-struct FMask { hn::Mask<FloatTag> m; };
-struct DMask { hn::Mask<DoubleTag> lo, hi; };
+struct FMask {
+  hn::Mask<FloatTag> m;
+};
+struct DMask {
+  hn::Mask<DoubleTag> lo, hi;
+};
 
 struct F {
   FloatVec v;
   F() = default;
   F(FloatVec a) : v(a) {}
-  template <class N> requires std::is_arithmetic_v<N>
+  template <class N>
+  requires std::is_arithmetic_v<N>
   explicit F(N a) : v(hn::Set(FloatTag(), static_cast<float>(a))) {}
 };
 struct D {
   DoubleVec lo, hi;
   D() = default;
   D(DoubleVec a, DoubleVec b) : lo(a), hi(b) {}
-  template <class N> requires std::is_arithmetic_v<N>
+  template <class N>
+  requires std::is_arithmetic_v<N>
   explicit D(N a) : lo(hn::Set(DoubleTag(), static_cast<double>(a))), hi(lo) {}
 };
 
@@ -120,7 +128,9 @@ inline DMask operator==(D a, D b) { return {hn::Eq(a.lo, b.lo), hn::Eq(a.hi, b.h
 inline DMask operator&(DMask a, DMask b) { return {hn::And(a.lo, b.lo), hn::And(a.hi, b.hi)}; }
 inline DMask operator|(DMask a, DMask b) { return {hn::Or(a.lo, b.lo), hn::Or(a.hi, b.hi)}; }
 inline DMask operator!(DMask a) { return {hn::Not(a.lo), hn::Not(a.hi)}; }
-inline D select(DMask m, D yes, D no) { return {hn::IfThenElse(m.lo, yes.lo, no.lo), hn::IfThenElse(m.hi, yes.hi, no.hi)}; }
+inline D select(DMask m, D yes, D no) {
+  return {hn::IfThenElse(m.lo, yes.lo, no.lo), hn::IfThenElse(m.hi, yes.hi, no.hi)};
+}
 inline D fma(D a, D b, D c) { return {hn::MulAdd(a.lo, b.lo, c.lo), hn::MulAdd(a.hi, b.hi, c.hi)}; }
 inline D sqrt(D a) { return {hn::Sqrt(a.lo), hn::Sqrt(a.hi)}; }
 inline D abs(D a) { return {hn::Abs(a.lo), hn::Abs(a.hi)}; }
@@ -136,9 +146,7 @@ struct NativeLanes {
 
   static F load(const float* p) { return hn::LoadU(FloatTag(), p); }
   static void store(F a, float* p) { hn::StoreU(a.v, FloatTag(), p); }
-  static D load_doubles(const double* p) {
-    return {hn::LoadU(DoubleTag(), p), hn::LoadU(DoubleTag(), p + kWidth / 2)};
-  }
+  static D load_doubles(const double* p) { return {hn::LoadU(DoubleTag(), p), hn::LoadU(DoubleTag(), p + kWidth / 2)}; }
   static D widen(F a) {
     const hn::Rebind<float, DoubleTag> half;
     return {hn::PromoteTo(DoubleTag(), hn::LowerHalf(half, a.v)), hn::PromoteTo(DoubleTag(), hn::UpperHalf(half, a.v))};
@@ -181,8 +189,12 @@ struct NativeLanes {
     alignas(64) float a[4][kWidth], b[4][kWidth];
     if constexpr (kWidth == 8) {
       // Row order is part of the result: the same as that of the scalar lanes.
-      for (int r = 0; r < 4; ++r) add_row(FloatTag(), rows[r], low[r].v, high[r].v, [](auto d, auto a, auto b) { return hn::ConcatLowerLower(d, b, a); });
-      for (int r = 0; r < 4; ++r) add_row(FloatTag(), rows[4 + r], low[r].v, high[r].v, [](auto d, auto a, auto b) { return hn::ConcatUpperUpper(d, b, a); });
+      for (int r = 0; r < 4; ++r)
+        add_row(FloatTag(), rows[r], low[r].v, high[r].v,
+                [](auto d, auto a, auto b) { return hn::ConcatLowerLower(d, b, a); });
+      for (int r = 0; r < 4; ++r)
+        add_row(FloatTag(), rows[4 + r], low[r].v, high[r].v,
+                [](auto d, auto a, auto b) { return hn::ConcatUpperUpper(d, b, a); });
       return;
     }
     for (int r = 0; r < 4; ++r) {
@@ -227,8 +239,10 @@ struct NativeLanes {
   static void transpose_quad(FloatVec a, FloatVec b, FloatVec c, FloatVec e, F* out) {
     const FloatTag d;
     const DoubleTag dd;
-    const auto ab_low = hn::BitCast(dd, hn::InterleaveLower(d, a, b)), ab_high = hn::BitCast(dd, hn::InterleaveUpper(d, a, b));
-    const auto ce_low = hn::BitCast(dd, hn::InterleaveLower(d, c, e)), ce_high = hn::BitCast(dd, hn::InterleaveUpper(d, c, e));
+    const auto ab_low = hn::BitCast(dd, hn::InterleaveLower(d, a, b)),
+               ab_high = hn::BitCast(dd, hn::InterleaveUpper(d, a, b));
+    const auto ce_low = hn::BitCast(dd, hn::InterleaveLower(d, c, e)),
+               ce_high = hn::BitCast(dd, hn::InterleaveUpper(d, c, e));
     out[0] = hn::BitCast(d, hn::InterleaveLower(dd, ab_low, ce_low));
     out[1] = hn::BitCast(d, hn::InterleaveUpper(dd, ab_low, ce_low));
     out[2] = hn::BitCast(d, hn::InterleaveLower(dd, ab_high, ce_high));

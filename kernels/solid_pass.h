@@ -2,7 +2,8 @@
 //
 // Particles in lanes, the primitives near them in slots. The solid is the *union* of its primitives (physics.md): after
 // all slots are evaluated, a contact point that lies in or on another touching primitive is buried and exerts nothing;
-// of contacts that are one point of several surfaces (a cap shared by fibres, an edge shared by walls) the deepest stays.
+// of contacts that are one point of several surfaces (a cap shared by fibres, an edge shared by walls) the deepest
+// stays.
 //
 //        \  a  /            x touches a and b. a's point pa lies inside b: buried. b's point pb is on the surface of
 //      ---\pa/----  b       the union: felt.
@@ -149,7 +150,8 @@ inline PairConstants<typename L::F> solid_constants_of(const SolidLanes<L>& lane
   if constexpr (Traits::uniform) return broadcast_constants<L>(task.materials->row(0, task.materials->columns - 1));
   const Real* rows[L::width];
   for (int k = 0; k < L::width; ++k)
-    rows[k] = task.materials->row(task.old_particles[lanes.block.i[lanes.lane + k]].kind(), lanes.surface(s)[lanes.primitives(s)[k]].column);
+    rows[k] = task.materials->row(task.old_particles[lanes.block.i[lanes.lane + k]].kind(),
+                                  lanes.surface(s)[lanes.primitives(s)[k]].column);
   return gather_constants<L>(rows);
 }
 
@@ -178,16 +180,17 @@ inline void solid_contact(const SolidLanes<L>& lanes, uint32_t s, ContactHistory
   const F arm = i.radius - F(0.5) * c.overlap;
   c.arm_spin = arm * i.spin;
   c.rolling_spin = (arm / (i.radius - c.overlap)) * i.spin;
-  const Reaction<F> r = hertz_mindlin<Traits::rolling>(c, solid_constants_of<L, Traits>(lanes, s), F(lanes.task.settings->history_dt),
-                                                       lanes.task.settings->limit_attraction, history);
+  const Reaction<F> r =
+      hertz_mindlin<Traits::rolling>(c, solid_constants_of<L, Traits>(lanes, s), F(lanes.task.settings->history_dt),
+                                     lanes.task.settings->limit_attraction, history);
   const Vec<F> zero{F(0), F(0), F(0)};
   force += select_vec(lanes.kept[s], r.force, zero);
   torque += select_vec(lanes.kept[s], -(arm * r.lever_torque) - r.rolling, zero);
 }
 
 template <class L, class Traits>
-inline void solid_lanes(const ChunkTask<typename L::Real>& task, const SolidBlock& block, SolidSlot<typename L::Real>* slots,
-                        int lane, typename L::F& max_share) {
+inline void solid_lanes(const ChunkTask<typename L::Real>& task, const SolidBlock& block,
+                        SolidSlot<typename L::Real>* slots, int lane, typename L::F& max_share) {
   using F = typename L::F;
   SolidLanes<L> lanes(task, block, slots, lane);
   const uint32_t count = block.slots();

@@ -100,7 +100,8 @@ class Search {
         SolidSlot<Real>& slot = t_.contacts->slots.emplace_back();
         std::fill(slot.primitive, slot.primitive + kBlock, dummies[kind]);
         for (size_t k = begin; k < end; ++k)
-          if (s < near_[k].counts[kind]) fill_lane(slot, static_cast<int>(k - begin), kind, near_[k], before[k - begin] + s);
+          if (s < near_[k].counts[kind])
+            fill_lane(slot, static_cast<int>(k - begin), kind, near_[k], before[k - begin] + s);
       }
       for (size_t k = begin; k < end; ++k) before[k - begin] += near_[k].counts[kind];
     }
@@ -109,7 +110,8 @@ class Search {
   void fill_lane(SolidSlot<Real>& slot, int lane, int kind, const Neighbourhood& n, uint32_t at) {
     const uint32_t row = found_[n.first + at];
     slot.primitive[lane] = row;
-    if (t_.history->copy_solid(t_.old_index[n.particle], t_.tables->identity(kind, row), slot.history[0] + lane)) slot.live |= 1u << lane;
+    if (t_.history->copy_solid(t_.old_index[n.particle], t_.tables->identity(kind, row), slot.history[0] + lane))
+      slot.live |= 1u << lane;
   }
 
   const SolidSearchTask<Real>& t_;

@@ -10,7 +10,8 @@ Primitive shifted(Primitive p, const Vec3& by) {
   std::visit(
       [&](auto& s) {
         using S = std::decay_t<decltype(s)>;
-        if constexpr (std::is_same_v<S, Segment>) s.a += by, s.b += by;
+        if constexpr (std::is_same_v<S, Segment>)
+          s.a += by, s.b += by;
         else if constexpr (std::is_same_v<S, Quad>)
           for (Vec3& c : s.corners) c += by;
         else
@@ -21,7 +22,8 @@ Primitive shifted(Primitive p, const Vec3& by) {
 }
 
 bool overlaps(const Bounds& a, const Bounds& b) {
-  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y && a.min.z <= b.max.z && b.min.z <= a.max.z;
+  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y && a.min.z <= b.max.z &&
+         b.min.z <= a.max.z;
 }
 
 constexpr double kFar = 1e6;  // m, where padding lanes' primitives lie
@@ -31,9 +33,12 @@ void add_row(Tables& t, const Primitive& p, const SolidSurface<Real>& surface, u
   std::visit(
       [&](const auto& s) {
         using S = std::decay_t<decltype(s)>;
-        if constexpr (std::is_same_v<S, Segment>) t.segments.add({prepared(s), p.radius}, surface, id);
-        else if constexpr (std::is_same_v<S, Quad>) t.quads.add({prepared(s), p.radius}, surface, id);
-        else t.revolutions.add({prepared(s), p.radius}, surface, id);
+        if constexpr (std::is_same_v<S, Segment>)
+          t.segments.add({prepared(s), p.radius}, surface, id);
+        else if constexpr (std::is_same_v<S, Quad>)
+          t.quads.add({prepared(s), p.radius}, surface, id);
+        else
+          t.revolutions.add({prepared(s), p.radius}, surface, id);
       },
       p.skeleton);
 }
@@ -48,7 +53,9 @@ ImagedSolid with_periodic_images(const Solid& solid, const Bounds& box, const bo
   for (int sx = -1; sx <= 1; ++sx)
     for (int sy = -1; sy <= 1; ++sy)
       for (int sz = -1; sz <= 1; ++sz) {
-        if ((sx == 0 && sy == 0 && sz == 0) || (sx != 0 && !periodic[0]) || (sy != 0 && !periodic[1]) || (sz != 0 && !periodic[2])) continue;
+        if ((sx == 0 && sy == 0 && sz == 0) || (sx != 0 && !periodic[0]) || (sy != 0 && !periodic[1]) ||
+            (sz != 0 && !periodic[2]))
+          continue;
         const Vec3 by{sx * length.x, sy * length.y, sz * length.z};
         for (uint32_t k = 0; k < solid.primitives.size(); ++k) {
           const Primitive image = shifted(solid.primitives[k], by);
@@ -70,7 +77,8 @@ SolidTables<Real> make_solid_tables(const ImagedSolid& imaged, uint32_t kinds) {
     const size_t row = kind == 0 ? t.segments.rows.size() : kind == 1 ? t.quads.rows.size() : t.revolutions.rows.size();
     t.kind.push_back(static_cast<uint8_t>(kind));
     t.row.push_back(static_cast<uint32_t>(row));
-    const Vec<Real> v{static_cast<Real>(p.velocity.x), static_cast<Real>(p.velocity.y), static_cast<Real>(p.velocity.z)};
+    const Vec<Real> v{static_cast<Real>(p.velocity.x), static_cast<Real>(p.velocity.y),
+                      static_cast<Real>(p.velocity.z)};
     add_row<Real>(t, p, {v, kinds + p.material}, imaged.identity[k]);
   }
   const Vec3 far{kFar, kFar, kFar};

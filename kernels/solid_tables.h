@@ -27,14 +27,17 @@ struct SolidTables {
   SkeletonRows<SegmentOf, Real> segments;
   SkeletonRows<QuadOf, Real> quads;
   SkeletonRows<RevolutionOf, Real> revolutions;
-  std::vector<uint8_t> kind;   // of each primitive in the (imaged) solid: 0 segment, 1 quad, 2 revolution
-  std::vector<uint32_t> row;   // its row in that kind's table
+  std::vector<uint8_t> kind;  // of each primitive in the (imaged) solid: 0 segment, 1 quad, 2 revolution
+  std::vector<uint32_t> row;  // its row in that kind's table
 
-  uint32_t identity(int k, uint32_t r) const { return k == 0 ? segments.identity[r] : k == 1 ? quads.identity[r] : revolutions.identity[r]; }
+  uint32_t identity(int k, uint32_t r) const {
+    return k == 0 ? segments.identity[r] : k == 1 ? quads.identity[r] : revolutions.identity[r];
+  }
 };
 
 // The solid with copies across periodic borders of what reaches within `reach` (m) of them. `identity[k]` is the
-// original's index. An infinite wall along a periodic axis needs no copies: give it as long as the box and it gets them.
+// original's index. An infinite wall along a periodic axis needs no copies: give it as long as the box and it gets
+// them.
 struct ImagedSolid {
   Solid solid;
   std::vector<uint32_t> identity;

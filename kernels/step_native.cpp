@@ -2,5 +2,7 @@
 #include "kernels/step_table.h"
 
 namespace scree {
-StepKernels<float> native_kernels(const KernelChoice& choice) { return kernels_for<HWY_NAMESPACE::NativeLanes>(choice); }
+StepKernels<float> native_kernels(const KernelChoice& choice) {
+  return kernels_for<HWY_NAMESPACE::NativeLanes>(choice);
+}
 }  // namespace scree

@@ -29,7 +29,6 @@ struct MaterialPair {
   double rolling_friction = 0;  // >= 0
 };
 
-
 enum class ContactModel { hertz_mindlin };  // Hertz normal force, Mindlin tangential force with history
 enum class Precision { mixed, reference };  // reference: everything in double, scalar; slow, the oracle
 
@@ -62,10 +61,11 @@ struct ParticleKind {
 struct Region {
   std::string name;
   enum class Shape { box, cylinder, frustum } shape = Shape::box;
-  Vec3 min{}, max{};                 // box: corners
-  Vec3 base{}, axis{0, 0, 1};        // cylinder: centre of the bottom, unit axis
-  double radius = 0, height = 0;     // cylinder; frustum uses height too
-  double bottom_x = 0, bottom_y = 0, top_x = 0, top_y = 0;  // frustum: side lengths at base.z and base.z + height; centred on base, axis z
+  Vec3 min{}, max{};              // box: corners
+  Vec3 base{}, axis{0, 0, 1};     // cylinder: centre of the bottom, unit axis
+  double radius = 0, height = 0;  // cylinder; frustum uses height too
+  double bottom_x = 0, bottom_y = 0, top_x = 0,
+         top_y = 0;  // frustum: side lengths at base.z and base.z + height; centred on base, axis z
 };
 
 // The share of each kind in what a stage inserts, by mass.
@@ -75,11 +75,11 @@ struct Mixture {
 };
 
 // Stages run in the order of the file.
-struct FillStage {  // place at once, without overlaps, then the next stage lets them fall
+struct FillStage {                // place at once, without overlaps, then the next stage lets them fall
   std::vector<uint32_t> regions;  // filled one after the other, each up to solid_fraction of its free space
   Mixture mixture;
-  double mass = 0;           // kg; 0: use count
-  uint64_t count = 0;        // 0 and mass 0: as many as fit
+  double mass = 0;               // kg; 0: use count
+  uint64_t count = 0;            // 0 and mass 0: as many as fit
   double solid_fraction = 0.55;  // what the placement aims at, 0 < phi <= 0.6
   Vec3 velocity{0, 0, 0};
 };
@@ -92,22 +92,22 @@ struct PourStage {  // insert from a region by rate until mass or count is reach
   Vec3 velocity{0, 0, 0};
   double solid_fraction = 0.3;  // of the region at each insertion
 };
-struct ReadStage {  // particles from a CSV file with a header: x, y, z, radius and optional vx, vy, vz, kind
+struct ReadStage {    // particles from a CSV file with a header: x, y, z, radius and optional vx, vy, vz, kind
   std::string file;   // full path
   uint32_t kind = 0;  // of particles whose row names none
 };
-struct SettleStage {  // run until at rest, or for `time`
-  double max_time = 0;              // s; fixed length if kinetic_energy_per_particle is 0
+struct SettleStage {                       // run until at rest, or for `time`
+  double max_time = 0;                     // s; fixed length if kinetic_energy_per_particle is 0
   double kinetic_energy_per_particle = 0;  // J
-  double min_time = 0;              // s
+  double min_time = 0;                     // s
 };
 struct OpenStage {  // remove walls by name
   std::vector<std::string> walls;
 };
-struct DrainStage {  // run until one of the given ends is met
-  double max_time = 0;                 // s, 0: none
-  double discharged_fraction = 0;      // 0..1 of the mass present at the stage's start; 0: none
-  double no_flow_time = 0;             // s without discharge; 0: none
+struct DrainStage {                // run until one of the given ends is met
+  double max_time = 0;             // s, 0: none
+  double discharged_fraction = 0;  // 0..1 of the mass present at the stage's start; 0: none
+  double no_flow_time = 0;         // s without discharge; 0: none
 };
 using StageAction = std::variant<FillStage, PourStage, ReadStage, SettleStage, OpenStage, DrainStage>;
 struct Stage {
@@ -131,27 +131,28 @@ struct Meter {
 };
 
 struct OutputSettings {
-  double interval = 1e-3;          // s between rows of mass_flow.csv and meters
-  double steady_from = 0, steady_to = 0;  // s after the drain began: window of the steady flow; 0, 0: found automatically
+  double interval = 1e-3;  // s between rows of mass_flow.csv and meters
+  double steady_from = 0,
+         steady_to = 0;  // s after the drain began: window of the steady flow; 0, 0: found automatically
   bool final_vtk = true;
 };
 
 struct TimeSettings {
-  double step = 0;                    // s; if 0, rayleigh_fraction is used
-  double rayleigh_fraction = 0.2;     // of the smallest Rayleigh time
-  bool allow_large_step = false;      // go on above half the Rayleigh time
+  double step = 0;                 // s; if 0, rayleigh_fraction is used
+  double rayleigh_fraction = 0.2;  // of the smallest Rayleigh time
+  bool allow_large_step = false;   // go on above half the Rayleigh time
 };
 
 struct NeighbourSettings {
-  double skin = 0;        // m; 0: chosen by the program
+  double skin = 0;  // m; 0: chosen by the program
 };
 
 struct Case {
   std::string title;
-  std::string source;     // path of the file it was read from
+  std::string source;  // path of the file it was read from
   uint64_t seed = 1;
   Vec3 gravity{0, 0, -9.81};
-  Bounds domain{};        // particles must stay inside; leaving other than through an outlet is an error
+  Bounds domain{};  // particles must stay inside; leaving other than through an outlet is an error
   bool periodic[3] = {false, false, false};
   std::vector<Material> materials;
   std::vector<MaterialPair> pairs;  // every pair that can touch, checked
@@ -165,7 +166,7 @@ struct Case {
     double porosity = 0;  // of the union of the fibres in `section`; 0: no fibres or a flat network
     double volume = 0;    // m3 of the union inside `section`
     uint64_t count = 0;
-    Bounds section{};     // the lattice's cells; without a lattice the bounds of the fibres' axes
+    Bounds section{};  // the lattice's cells; without a lattice the bounds of the fibres' axes
   } fibres;
   std::vector<Region> regions;
   std::vector<Stage> stages;

@@ -17,7 +17,9 @@ double hertz_time(const Material& m, double radius, double speed) {
   return 2.87 * std::pow(mass * mass / (0.5 * radius * youngs_star * youngs_star * speed), 0.2);
 }
 
-double sphere_mass(double radius, double density) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density; }
+double sphere_mass(double radius, double density) {
+  return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density;
+}
 
 namespace {
 
@@ -58,11 +60,14 @@ double largest_radius(const Case& c) {
 
 double smallest_rayleigh_time(const Case& c) {
   double t = 1e300;
-  for (const ParticleKind& k : c.kinds) t = std::min(t, rayleigh_time(c.materials[k.material], 0.5 * smallest_diameter(k.size)));
+  for (const ParticleKind& k : c.kinds)
+    t = std::min(t, rayleigh_time(c.materials[k.material], 0.5 * smallest_diameter(k.size)));
   return t;
 }
 
-double time_step_of(const Case& c) { return c.time.step > 0 ? c.time.step : c.time.rayleigh_fraction * smallest_rayleigh_time(c); }
+double time_step_of(const Case& c) {
+  return c.time.step > 0 ? c.time.step : c.time.rayleigh_fraction * smallest_rayleigh_time(c);
+}
 
 template <class Real>
 MaterialTable<Real> material_table(const Case& c) {
@@ -71,11 +76,14 @@ MaterialTable<Real> material_table(const Case& c) {
   // The last column repeats a wall material that occurs, for the kernels that know one row for all walls.
   t.columns = t.kinds + static_cast<uint32_t>(c.materials.size()) + 1;
   t.rows.resize(size_t{t.kinds} * t.columns);
-  const auto moduli = [&](uint32_t m) { return ElasticModuli{c.materials[m].youngs_modulus, c.materials[m].poisson_ratio}; };
+  const auto moduli = [&](uint32_t m) {
+    return ElasticModuli{c.materials[m].youngs_modulus, c.materials[m].poisson_ratio};
+  };
   const auto fill = [&](uint32_t kind, uint32_t column, uint32_t other) {
     const uint32_t own = c.kinds[kind].material;
     if (const MaterialPair* p = find_pair(c, own, other))
-      t.set(kind, column, pair_constants(moduli(own), moduli(other), p->restitution, p->sliding_friction, p->rolling_friction));
+      t.set(kind, column,
+            pair_constants(moduli(own), moduli(other), p->restitution, p->sliding_friction, p->rolling_friction));
   };
   std::set<uint32_t> wall_materials;
   for (const Primitive& p : c.solid.primitives) wall_materials.insert(p.material);

@@ -15,18 +15,28 @@ namespace scree {
 
 namespace {
 
-// Bytes a particle of the settled 400 um bed, lists and sort buffers included, at the peak of a rebuild: see bench/README.md.
+// Bytes a particle of the settled 400 um bed, lists and sort buffers included, at the peak of a rebuild: see
+// bench/README.md.
 constexpr double kBytesPerParticle = 560;
 constexpr double kFixedBytes = 60e6;
 
 std::string stage_text(const Case& c, const Stage& stage) {
   struct Text {
     const Case& c;
-    std::string operator()(const FillStage& s) const { return fmt::format("fill: {:.0f} particles at solid fraction {}", expected_particles(c, s), s.solid_fraction); }
-    std::string operator()(const PourStage& s) const { return fmt::format("pour: {:.0f} particles at {:.4g} kg/s from '{}'", expected_particles(c, s), s.rate, c.regions[s.region].name); }
-    std::string operator()(const ReadStage& s) const { return fmt::format("read: {:.0f} particles from {}", expected_particles(c, s), s.file); }
+    std::string operator()(const FillStage& s) const {
+      return fmt::format("fill: {:.0f} particles at solid fraction {}", expected_particles(c, s), s.solid_fraction);
+    }
+    std::string operator()(const PourStage& s) const {
+      return fmt::format("pour: {:.0f} particles at {:.4g} kg/s from '{}'", expected_particles(c, s), s.rate,
+                         c.regions[s.region].name);
+    }
+    std::string operator()(const ReadStage& s) const {
+      return fmt::format("read: {:.0f} particles from {}", expected_particles(c, s), s.file);
+    }
     std::string operator()(const SettleStage& s) const {
-      return s.kinetic_energy_per_particle > 0 ? fmt::format("settle: until {:.3g} J a particle, at most {:.4g} s", s.kinetic_energy_per_particle, s.max_time) : fmt::format("settle: {:.4g} s", s.max_time);
+      return s.kinetic_energy_per_particle > 0 ? fmt::format("settle: until {:.3g} J a particle, at most {:.4g} s",
+                                                             s.kinetic_energy_per_particle, s.max_time)
+                                               : fmt::format("settle: {:.4g} s", s.max_time);
     }
     std::string operator()(const OpenStage& s) const { return fmt::format("open: {}", fmt::join(s.walls, ", ")); }
     std::string operator()(const DrainStage& s) const {
@@ -47,7 +57,8 @@ double longest_time(const Case& c) {
   for (const Stage& stage : c.stages) {
     if (const auto* s = std::get_if<SettleStage>(&stage.action)) t += s->max_time;
     if (const auto* s = std::get_if<DrainStage>(&stage.action)) t += s->max_time;
-    if (const auto* s = std::get_if<PourStage>(&stage.action)) t += (s->mass > 0 ? s->mass : static_cast<double>(s->count) / particles_per_mass(c, s->mixture)) / s->rate;
+    if (const auto* s = std::get_if<PourStage>(&stage.action))
+      t += (s->mass > 0 ? s->mass : static_cast<double>(s->count) / particles_per_mass(c, s->mixture)) / s->rate;
   }
   return t;
 }
@@ -91,21 +102,34 @@ std::string describe_case(const Case& c) {
   const TimeScales s = time_scales(c);
   const double particles = expected_particles(c);
   std::string text = fmt::format("{}\n", c.title);
-  const auto line = [&](std::string_view name, const std::string& value) { text += fmt::format("  {:<16} {}\n", name, value); };
-  line("particles", fmt::format("{:.0f}, radius {:.4g} to {:.4g} m, {} kind{}", particles, smallest_radius(c), largest_radius(c), c.kinds.size(), c.kinds.size() == 1 ? "" : "s"));
-  if (c.fibres.count > 0) line("fibres", fmt::format("{}, diameter {:.4g} m, porosity {:.4f} (of the union)", c.fibres.count, c.fibres.diameter, c.fibres.porosity));
-  line("walls", fmt::format("{} of {} surfaces: {}", c.solid.walls.size(), c.solid.primitives.size() - c.fibres.count, fmt::join(c.solid.walls, ", ")));
-  line("time step", fmt::format("{:.4g} s = {:.3f} of the Rayleigh time {:.4g} s = {:.3f} of the Hertz time {:.4g} s at {:.3g} m/s", s.step, s.step / s.rayleigh, s.rayleigh, s.step / s.hertz, s.hertz, s.speed));
-  for (size_t k = 0; k < c.stages.size(); ++k) line(k == 0 ? "stages" : "", fmt::format("{}. {}", k + 1, stage_text(c, c.stages[k])));
-  if (const double t = longest_time(c); t > 0) line("physical time", fmt::format("at most {:.4g} s = {:.0f} steps", t, t / s.step));
-  line("memory", fmt::format("about {:.2f} GB ({:.0f} B a particle and {:.0f} MB)", (kFixedBytes + kBytesPerParticle * particles) / 1e9, kBytesPerParticle, kFixedBytes / 1e6));
+  const auto line = [&](std::string_view name, const std::string& value) {
+    text += fmt::format("  {:<16} {}\n", name, value);
+  };
+  line("particles", fmt::format("{:.0f}, radius {:.4g} to {:.4g} m, {} kind{}", particles, smallest_radius(c),
+                                largest_radius(c), c.kinds.size(), c.kinds.size() == 1 ? "" : "s"));
+  if (c.fibres.count > 0)
+    line("fibres", fmt::format("{}, diameter {:.4g} m, porosity {:.4f} (of the union)", c.fibres.count,
+                               c.fibres.diameter, c.fibres.porosity));
+  line("walls", fmt::format("{} of {} surfaces: {}", c.solid.walls.size(), c.solid.primitives.size() - c.fibres.count,
+                            fmt::join(c.solid.walls, ", ")));
+  line("time step",
+       fmt::format("{:.4g} s = {:.3f} of the Rayleigh time {:.4g} s = {:.3f} of the Hertz time {:.4g} s at {:.3g} m/s",
+                   s.step, s.step / s.rayleigh, s.rayleigh, s.step / s.hertz, s.hertz, s.speed));
+  for (size_t k = 0; k < c.stages.size(); ++k)
+    line(k == 0 ? "stages" : "", fmt::format("{}. {}", k + 1, stage_text(c, c.stages[k])));
+  if (const double t = longest_time(c); t > 0)
+    line("physical time", fmt::format("at most {:.4g} s = {:.0f} steps", t, t / s.step));
+  line("memory",
+       fmt::format("about {:.2f} GB ({:.0f} B a particle and {:.0f} MB)",
+                   (kFixedBytes + kBytesPerParticle * particles) / 1e9, kBytesPerParticle, kFixedBytes / 1e6));
   return text;
 }
 
 std::string estimate_time(const Case& c) {
   const double rate = measured_rate(c), steps = longest_time(c) / time_step_of(c), particles = expected_particles(c);
-  return fmt::format("  {:<16} at most about {} with {} thread{} ({:.3g} M particle-steps/s measured now on a small bed)\n", "wall time",
-                     duration_text(particles * steps / rate), thread_count(), thread_count() == 1 ? "" : "s", rate / 1e6);
+  return fmt::format(
+      "  {:<16} at most about {} with {} thread{} ({:.3g} M particle-steps/s measured now on a small bed)\n",
+      "wall time", duration_text(particles * steps / rate), thread_count(), thread_count() == 1 ? "" : "s", rate / 1e6);
 }
 
 }  // namespace scree

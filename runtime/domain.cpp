@@ -1,44 +1,23 @@
 #include "runtime/domain.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
-#include <chrono>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
-#include "geometry/bounds.h"
 #include "kernels/parallel.h"
 #include "kernels/periodic.h"
-#include "kernels/radix_sort.h"
-#include "kernels/solid_search.h"
 #include "runtime/case_physics.h"
+#include "runtime/timer.h"
 
 namespace scree {
 
 namespace {
 
-// Sizes of the lists, in units of the largest radius or of a step; measured on settled beds and drains.
-constexpr double kInnerShare = 0.04;        // inner skin / largest radius: engine.md's 0.02 D
-constexpr double kSkinAtRest = 0.4;         // outer skin / largest radius: 0.2 D
-constexpr double kSkinMost = 1.2;           // of the largest radius, in fast flow
-constexpr double kStepsPerRebuild = 20;     // what the skin of a fast flow is chosen for
-constexpr double kMaxOverlapShare = 0.5;    // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted
-constexpr double kMaxTravelShare = 0.2;     // of the smallest radius, in one step
-constexpr uint32_t kChunk = 2048, kSmallestChunk = 256;
-constexpr uint32_t kWantedChunks = 64;      // small runs get smaller chunks, so that several threads find work
-
-class Timer {
- public:
-  explicit Timer(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-  ~Timer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_;
-};
+constexpr double kMaxOverlapShare =
+    0.5;                                 // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted
+constexpr double kMaxTravelShare = 0.2;  // of the smallest radius, in one step
 
 uint64_t mix(uint64_t h) {  // splitmix64's finaliser
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -50,8 +29,11 @@ uint64_t mix(uint64_t h) {  // splitmix64's finaliser
 
 template <class Real>
 Domain<Real>::Domain(const Case& c, const EngineOptions& options)
-    : box_(c.domain), solid_(c.solid), brute_force_solid_(options.brute_force_solid),
-      fixed_skin_(options.skin > 0 ? options.skin : c.neighbour.skin), kinds_(static_cast<uint32_t>(c.kinds.size())) {
+    : box_(c.domain),
+      solid_(c.solid),
+      brute_force_solid_(options.brute_force_solid),
+      fixed_skin_(options.skin > 0 ? options.skin : c.neighbour.skin),
+      kinds_(static_cast<uint32_t>(c.kinds.size())) {
   for (int a = 0; a < 3; ++a) periodic_[a] = c.periodic[a];
   const Vec3 length = c.domain.max - c.domain.min;
   const double lengths[3] = {length.x, length.y, length.z}, gravity[3] = {c.gravity.x, c.gravity.y, c.gravity.z};
@@ -69,7 +51,13 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
 
 template <class Real>
 ParticleState Domain<Real>::state_of(const Particle<Real>& p) const {
-  return {{p.x, p.y, p.z}, {p.vx, p.vy, p.vz}, {p.wx, p.wy, p.wz}, static_cast<double>(p.radius), 1.0 / static_cast<double>(p.inverse_mass), p.kind(), p.id()};
+  return {{p.x, p.y, p.z},
+          {p.vx, p.vy, p.vz},
+          {p.wx, p.wy, p.wz},
+          static_cast<double>(p.radius),
+          1.0 / static_cast<double>(p.inverse_mass),
+          p.kind(),
+          p.id()};
 }
 
 template <class Real>
@@ -104,7 +92,8 @@ void Domain<Real>::insert(std::span<const ParticleState> particles) {
     Particle<Real> p;
     p.x = s.position.x, p.y = s.position.y, p.z = s.position.z;
     p.tag = Particle<Real>::make_tag(s.kind, next_id_++);
-    p.vx = static_cast<Real>(s.velocity.x), p.vy = static_cast<Real>(s.velocity.y), p.vz = static_cast<Real>(s.velocity.z);
+    p.vx = static_cast<Real>(s.velocity.x), p.vy = static_cast<Real>(s.velocity.y),
+    p.vz = static_cast<Real>(s.velocity.z);
     p.wx = static_cast<Real>(s.spin.x), p.wy = static_cast<Real>(s.spin.y), p.wz = static_cast<Real>(s.spin.z);
     p.radius = static_cast<Real>(s.radius), p.inverse_mass = static_cast<Real>(1 / s.mass);
     now_[count_++] = p;
@@ -128,201 +117,7 @@ void Domain<Real>::open_walls(const std::vector<uint32_t>& walls) {
   index_.reset();
 }
 
-template <class Real>
-void Domain<Real>::index_solid() {
-  const double reach = max_radius_ * (1 + 2 * kSkinMost) + 2 * fixed_skin_;
-  ImagedSolid imaged = with_periodic_images(solid_, box_, periodic_, reach);
-  for (uint32_t& id : imaged.identity) id = solid_identity_[id];
-  tables_ = make_solid_tables<Real>(imaged, kinds_);
-  prepared_.clear();
-  for (const Primitive& p : imaged.solid.primitives) prepared_.push_back(prepared(p));
-  index_ = brute_force_solid_ ? make_brute_force_index(imaged.solid) : make_embree_index(imaged.solid);
-}
-
-// ---- rebuild ---------------------------------------------------------------------------------------------------------
-
-template <class Real>
-void Domain<Real>::rebuild() {
-  invalidate_lists();
-  if (!index_) index_solid();
-  choose_skin();
-  {
-    Timer t(counters_.sort_seconds);
-    check_and_wrap();
-    sort_particles();
-    mark_ranges();
-  }
-  search_pairs();
-  search_solids();
-  history_.count = 0;
-  travel_ = near_travel_ = 0;
-  lists_valid_ = true;
-  ++counters_.rebuilds;
-}
-
-template <class Real>
-void Domain<Real>::choose_skin() {
-  const double way = 2 * kStepsPerRebuild * max_speed_ * settings_.dt;
-  skin_ = fixed_skin_ > 0 ? fixed_skin_ : std::clamp(way, kSkinAtRest * max_radius_, kSkinMost * max_radius_);
-  for (const double period : settings_.period)
-    if (period > 0) skin_ = std::min(skin_, 0.4999 * period - 2 * max_radius_);
-  if (skin_ <= 0 && count_ > 0) throw RunError("a periodic axis is shorter than twice the largest diameter");
-  inner_ = std::min(kInnerShare * max_radius_, skin_);
-}
-
-// Takes the histories out of the lists; they wait in history_ for the next rebuild.
-template <class Real>
-void Domain<Real>::invalidate_lists() {
-  if (lists_valid_) gather_histories();
-  lists_valid_ = false;
-}
-
-template <class Real>
-void Domain<Real>::gather_histories() {
-  Timer t(counters_.history_seconds);
-  history_.chunk_size = chunk_size_, history_.count = contacts_.empty() ? 0 : chunk_end(contacts_.size() - 1);
-  history_.pairs.resize(contacts_.size()), history_.solids.resize(contacts_.size());
-  parallel_for(contacts_.size(), [&](size_t c) {
-    const uint32_t begin = chunk_begin(c), size = chunk_end(c) - begin;
-    history_.pairs[c].gather(size, [&](const auto& visit) { list_live_pairs(contacts_[c], begin, visit); });
-    const auto identity = [&](int kind, uint32_t row) { return tables_.identity(kind, row); };
-    history_.solids[c].gather(size, [&](const auto& visit) { list_live_solids(contacts_[c], begin, identity, visit); });
-    contacts_[c].clear();
-  });
-}
-
-// Wraps positions round periodic borders, refuses particles outside the domain that no outlet explains.
-template <class Real>
-void Domain<Real>::check_and_wrap() {
-  std::atomic<uint32_t> lost{count_};
-  const size_t pieces = (count_ + kChunk - 1) / kChunk;
-  parallel_for(pieces, [&](size_t c) {
-    for (uint32_t k = static_cast<uint32_t>(c) * kChunk; k < std::min<size_t>(count_, (c + 1) * kChunk); ++k) {
-      Particle<Real>& p = now_[k];
-      double* x[3] = {&p.x, &p.y, &p.z};
-      const double low[3] = {box_.min.x, box_.min.y, box_.min.z}, high[3] = {box_.max.x, box_.max.y, box_.max.z};
-      bool outside = false;
-      for (int a = 0; a < 3; ++a) {
-        if (periodic_[a]) *x[a] -= settings_.period[a] * std::floor((*x[a] - low[a]) / settings_.period[a]);
-        else outside |= !(*x[a] >= low[a] && *x[a] <= high[a]);
-      }
-      if (outside && !(leaves_ && leaves_(state_of(p)) >= 0)) lost = k;
-    }
-  });
-  if (lost < count_) {
-    const ParticleState s = state(lost);
-    throw RunError(fmt::format("particle {} left the domain at ({:.6g}, {:.6g}, {:.6g}) m, t = {:.6g} s, speed {:.4g} m/s, not through an outlet. "
-                               "Close the gap in the walls, enlarge [domain], or add an [[outlet]] there.",
-                               s.id, s.position.x, s.position.y, s.position.z, time(), norm(s.velocity)));
-  }
-}
-
-// The bounding box of the particles; along periodic axes it begins where the domain does.
-template <class Real>
-Bounds Domain<Real>::occupied_bounds() const {
-  if (count_ == 0) return box_;
-  std::vector<Bounds> partial((count_ + kChunk - 1) / kChunk, empty_bounds());
-  parallel_for(partial.size(), [&](size_t c) {
-    for (size_t k = c * kChunk; k < std::min<size_t>(count_, (c + 1) * kChunk); ++k) {
-      const Vec3 x{now_[k].x, now_[k].y, now_[k].z};
-      partial[c] = united(partial[c], {x, x});
-    }
-  });
-  Bounds all = empty_bounds();
-  for (const Bounds& b : partial) all = united(all, b);
-  if (periodic_[0]) all.min.x = box_.min.x;
-  if (periodic_[1]) all.min.y = box_.min.y;
-  if (periodic_[2]) all.min.z = box_.min.z;
-  return all;
-}
-
-// Counts the particles that the removal rule takes out; returns their marks.
-template <class Real>
-std::vector<uint8_t> Domain<Real>::take_out_leavers() {
-  if (!leaves_) return {};
-  std::vector<int> where(count_);
-  parallel_for((count_ + kChunk - 1) / kChunk, [&](size_t c) {
-    for (size_t k = c * kChunk; k < std::min<size_t>(count_, (c + 1) * kChunk); ++k) where[k] = leaves_(state(k));
-  });
-  std::vector<uint8_t> gone(count_);
-  for (size_t k = 0; k < count_; ++k) {
-    if (where[k] < 0) continue;
-    gone[k] = 1, ++counters_.removed;
-    if (counters_.removed_mass.size() <= static_cast<size_t>(where[k])) counters_.removed_mass.resize(where[k] + 1, 0.0);
-    counters_.removed_mass[where[k]] += state(k).mass;
-  }
-  return gone;
-}
-
-template <class Real>
-void Domain<Real>::sort_particles() {
-  const std::vector<uint8_t> gone = take_out_leavers();
-  const Vec3 size = box_.max - box_.min;
-  const double cell = max_radius_ > 0 ? 2 * max_radius_ + skin_ : std::max({size.x, size.y, size.z});
-  grid_.lay(occupied_bounds(), settings_.period, cell, std::max<size_t>(4096, size_t{4} * count_));
-
-  packed_.resize(count_);
-  parallel_for((count_ + kChunk - 1) / kChunk, [&](size_t c) {
-    for (size_t k = c * kChunk; k < std::min<size_t>(count_, (c + 1) * kChunk); ++k)
-      packed_[k] = uint64_t{grid_.morton(grid_.cell_of({now_[k].x, now_[k].y, now_[k].z}))} << 32 | k;
-  });
-  if (!gone.empty()) std::erase_if(packed_, [&](uint64_t p) { return gone[p & 0xffffffffu]; });
-  radix_sort(packed_, packed_scratch_, grid_.morton_bits());
-
-  count_ = static_cast<uint32_t>(packed_.size());
-  old_index_.resize(count_);
-  parallel_for((count_ + kChunk - 1) / kChunk, [&](size_t c) {
-    for (size_t k = c * kChunk; k < std::min<size_t>(count_, (c + 1) * kChunk); ++k) {
-      old_index_[k] = static_cast<uint32_t>(packed_[k]);
-      next_[k] = now_[old_index_[k]];
-    }
-  });
-  now_.swap(next_);
-  place_dummies(now_), place_dummies(next_);
-  chunk_size_ = std::clamp((count_ / kWantedChunks + 63) / 64 * 64, kSmallestChunk, kChunk);
-}
-
-template <class Real>
-void Domain<Real>::mark_ranges() {
-  parallel_for((count_ + kChunk - 1) / kChunk, [&](size_t c) {
-    for (size_t k = c * kChunk; k < std::min<size_t>(count_, (c + 1) * kChunk); ++k) {
-      const uint32_t code = static_cast<uint32_t>(packed_[k] >> 32);
-      CellGrid::Range& range = grid_.ranges[grid_.linear(grid_.cell_of({now_[k].x, now_[k].y, now_[k].z}))];
-      if (k == 0 || static_cast<uint32_t>(packed_[k - 1] >> 32) != code) range.begin = static_cast<uint32_t>(k);
-      if (k + 1 == count_ || static_cast<uint32_t>(packed_[k + 1] >> 32) != code) range.end = static_cast<uint32_t>(k + 1);
-    }
-  });
-}
-
-template <class Real>
-void Domain<Real>::search_pairs() {
-  Timer t(counters_.pair_search_seconds);
-  contacts_.resize(chunks());
-  outcomes_.resize(chunks());
-  parallel_for(chunks(), [&](size_t c) {
-    contacts_[c].clear();
-    kernels_.search({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, skin_, inner_, old_index_.data(), &history_, &contacts_[c]});
-  });
-}
-
-template <class Real>
-void Domain<Real>::search_solids() {
-  Timer t(counters_.solid_search_seconds);
-  if (solid_.primitives.empty()) return;
-  std::atomic<uint32_t> crowded{count_};
-  parallel_for(chunks(), [&](size_t c) {
-    const uint32_t bad = search_solid<Real>({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, skin_, index_.get(), &prepared_,
-                                             &tables_, old_index_.data(), &history_, &contacts_[c]});
-    if (bad != count_) crowded = bad;
-  });
-  if (crowded == count_) return;
-  const ParticleState s = state(crowded);
-  throw RunError(fmt::format("particle {} of radius {:.4g} m at ({:.6g}, {:.6g}, {:.6g}) m has more than {} fibres and walls within {:.4g} m; "
-                             "use smaller particles, a coarser fibre network, or a smaller [neighbour] skin",
-                             s.id, s.radius, s.position.x, s.position.y, s.position.z, kMaxSlots, s.radius + skin_));
-}
-
-// ---- step ------------------------------------------------------------------------------------------------------------
+// ---- step
 
 template <class Real>
 void Domain<Real>::step() {
@@ -350,15 +145,17 @@ void Domain<Real>::step() {
   near_travel_ += max_speed_ * settings_.dt;
   ++counters_.steps;
   counters_.particle_steps += count_;
-  if (all.too_fast || all.max_pair_overlap > kMaxOverlapShare || all.max_solid_overlap > kMaxOverlapShare) fail_step(all);
+  if (all.too_fast || all.max_pair_overlap > kMaxOverlapShare || all.max_solid_overlap > kMaxOverlapShare)
+    fail_step(all);
 }
 
 template <class Real>
 void Domain<Real>::advance_chunks() {
   parallel_for(chunks(), [&](size_t c) {
     alignas(64) thread_local Real rows[(kChunk + 1) * 8];
-    outcomes_[c] = kernels_.step({now_.data(), next_.data(), chunk_begin(c), chunk_end(c), count_, &contacts_[c], &materials_,
-                                  tables_.segments.view(), tables_.quads.view(), tables_.revolutions.view(), &settings_, rows});
+    outcomes_[c] =
+        kernels_.step({now_.data(), next_.data(), chunk_begin(c), chunk_end(c), count_, &contacts_[c], &materials_,
+                       tables_.segments.view(), tables_.quads.view(), tables_.revolutions.view(), &settings_, rows});
   });
   now_.swap(next_);
 }
@@ -366,27 +163,37 @@ void Domain<Real>::advance_chunks() {
 template <class Real>
 void Domain<Real>::fail_step(const ChunkOutcome& outcome) const {
   if (!outcome.too_fast)
-    throw RunError(fmt::format("at t = {:.6g} s an overlap reached {:.3g} of {} (limit {}): use a smaller [time] step or a larger youngs_modulus",
-                               time(), std::max(outcome.max_pair_overlap, outcome.max_solid_overlap),
-                               outcome.max_pair_overlap > kMaxOverlapShare ? "the sum of two particles' radii" : "a particle's radius at a wall or fibre", kMaxOverlapShare));
+    throw RunError(
+        fmt::format("at t = {:.6g} s an overlap reached {:.3g} of {} (limit {}): use a smaller [time] step or a larger "
+                    "youngs_modulus",
+                    time(), std::max(outcome.max_pair_overlap, outcome.max_solid_overlap),
+                    outcome.max_pair_overlap > kMaxOverlapShare ? "the sum of two particles' radii"
+                                                                : "a particle's radius at a wall or fibre",
+                    kMaxOverlapShare));
   for (size_t k = 0; k < count_; ++k) {
     const ParticleState s = state(k);
     if (norm(s.velocity) <= settings_.speed_limit) continue;
     if (std::isnan(norm(s.velocity)))
-      throw RunError(fmt::format("the velocity of particle {} is not a number at t = {:.6g} s, after a largest overlap of {:.3g} radii: use a smaller [time] step (now {:.4g} s)",
-                                 s.id, time(), outcome.max_pair_overlap, settings_.dt));
-    throw RunError(fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s at t = {:.6g} s, more than {:.4g} m/s = {} radii in a step: "
-                               "use a smaller [time] step (now {:.4g} s)",
-                               s.id, s.position.x, s.position.y, s.position.z, norm(s.velocity), time(), settings_.speed_limit, kMaxTravelShare, settings_.dt));
+      throw RunError(
+          fmt::format("the velocity of particle {} is not a number at t = {:.6g} s, after a largest overlap of {:.3g} "
+                      "radii: use a smaller [time] step (now {:.4g} s)",
+                      s.id, time(), outcome.max_pair_overlap, settings_.dt));
+    throw RunError(
+        fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s at t = {:.6g} s, more than {:.4g} "
+                    "m/s = {} radii in a step: "
+                    "use a smaller [time] step (now {:.4g} s)",
+                    s.id, s.position.x, s.position.y, s.position.z, norm(s.velocity), time(), settings_.speed_limit,
+                    kMaxTravelShare, settings_.dt));
   }
   throw RunError(fmt::format("a particle was too fast at t = {:.6g} s", time()));
 }
 
-// ---- what others read ------------------------------------------------------------------------------------------------
+// ---- what others read
 
 template <class Real>
 size_t Domain<Real>::bytes() const {
-  size_t total = now_.bytes() + next_.bytes() + grid_.bytes() + (packed_.capacity() + packed_scratch_.capacity()) * 8 + old_index_.capacity() * 4;
+  size_t total = now_.bytes() + next_.bytes() + grid_.bytes() + (packed_.capacity() + packed_scratch_.capacity()) * 8 +
+                 old_index_.capacity() * 4;
   for (const auto& c : contacts_) total += c.bytes();
   return total;
 }
@@ -439,7 +246,8 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
       const double overlap = a.radius + b.radius - norm(d);
       if (overlap > 0) result.push_back({a.id, b.id, overlap});
     };
-    for (uint32_t k = 0; k < contacts_[c].pairs; ++k) look(contacts_[c].blocks[k / kBlock].i[k % kBlock], contacts_[c].blocks[k / kBlock].j[k % kBlock]);
+    for (uint32_t k = 0; k < contacts_[c].pairs; ++k)
+      look(contacts_[c].blocks[k / kBlock].i[k % kBlock], contacts_[c].blocks[k / kBlock].j[k % kBlock]);
     for (const NearPair& n : contacts_[c].near) look(n.i, n.j);
   }
   return result;

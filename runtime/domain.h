@@ -1,4 +1,5 @@
-// A domain: the particles of a stretch of the Morton curve, their contacts, and the step. Real is the storage precision.
+// A domain: the particles of a stretch of the Morton curve, their contacts, and the step. Real is the storage
+// precision.
 #pragma once
 
 #include <array>
@@ -12,6 +13,9 @@
 #include "runtime/engine.h"
 
 namespace scree {
+
+inline constexpr uint32_t kChunk =
+    2048;  // particles in a chunk, at most: its records and force rows fit a core's cache
 
 template <class Real>
 class Domain final : public Engine {
@@ -63,7 +67,7 @@ class Domain final : public Engine {
 
   Bounds box_;
   bool periodic_[3];
-  Solid solid_;  // what is left of the case's after walls were opened
+  Solid solid_;                           // what is left of the case's after walls were opened
   std::vector<uint32_t> solid_identity_;  // index in the case's list of each primitive that is left
   bool brute_force_solid_;
   double fixed_skin_;

@@ -1,8 +1,8 @@
 // The engine as the stages see it: particles go in, steps are taken, sums come out. One implementation per storage
 // precision (runtime/domain.h); nothing here depends on it. SI units.
 //
-// A *domain* owns a stretch of the Morton curve. Here it is the whole curve; nothing outside assumes so: ids are global,
-// and sums over particles go through sum(), insertion and removal through insert() and the removal rule.
+// A *domain* owns a stretch of the Morton curve. Here it is the whole curve; nothing outside assumes so: ids are
+// global, and sums over particles go through sum(), insertion and removal through insert() and the removal rule.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@
 
 namespace scree {
 
-// A particle as the outside sees it. Velocities are half a step behind positions (leapfrog), except before the first step.
+// A particle as the outside sees it. Velocities are half a step behind positions (leapfrog), except before the first
+// step.
 struct ParticleState {
   Vec3 position{}, velocity{}, spin{};
   double radius = 0, mass = 0;
@@ -37,9 +38,9 @@ struct EngineCounters {
 };
 
 struct EngineOptions {
-  std::string isa;         // empty: the best available
+  std::string isa;                 // empty: the best available
   bool brute_force_solid = false;  // the oracle's twin of the Embree index
-  double skin = 0;         // m; 0: from speeds and sizes
+  double skin = 0;                 // m; 0: from speeds and sizes
 };
 
 class Engine {
@@ -49,8 +50,8 @@ class Engine {
   virtual void insert(std::span<const ParticleState> particles) = 0;  // ids are given in order
   virtual void open_walls(const std::vector<uint32_t>& walls) = 0;    // removes primitives of these parts of the solid
 
-  // One step of the case's dt. Throws RunError when the state is not to be trusted: a particle too fast, NaN, an overlap
-  // beyond the limit, a particle outside the domain.
+  // One step of the case's dt. Throws RunError when the state is not to be trusted: a particle too fast, NaN, an
+  // overlap beyond the limit, a particle outside the domain.
   virtual void step() = 0;
 
   // A particle for which this gives k >= 0 is taken out at the next list rebuild and counted in removed_mass[k].

@@ -42,7 +42,8 @@ int run(const Arguments& a) {
   scree::RunOptions options;
   options.out = a.out.empty() ? default_folder(a.case_file) : std::filesystem::path(a.out);
   if (std::filesystem::exists(options.out) && !std::filesystem::is_empty(options.out)) {
-    fmt::print(stderr, "scree: the results folder {} is not empty: name another with --out, or remove it\n", options.out.string());
+    fmt::print(stderr, "scree: the results folder {} is not empty: name another with --out, or remove it\n",
+               options.out.string());
     return kBadInput;
   }
   options.threads = a.threads;
@@ -55,13 +56,17 @@ int run(const Arguments& a) {
 
   const scree::RunResult result = scree::run_case(c, options);
   if (result.steady)
-    fmt::print("steady mass flow rate {:.3f} +- {:.3f} g/s, from {:.3f} s to {:.3f} s\n", 1e3 * result.steady->rate, 1e3 * result.steady->standard_error, result.steady->from, result.steady->to);
+    fmt::print("steady mass flow rate {:.3f} +- {:.3f} g/s, from {:.3f} s to {:.3f} s\n", 1e3 * result.steady->rate,
+               1e3 * result.steady->standard_error, result.steady->from, result.steady->to);
   else if (result.status == scree::RunStatus::done)
     fmt::print("no steady mass flow: the run has no drain, or its discharge has no plateau (see mass_flow.csv)\n");
   fmt::print("results in {}\n", std::filesystem::absolute(result.out).string());
   if (result.status == scree::RunStatus::failed) fmt::print(stderr, "scree: the run failed: {}\n", result.message);
-  if (result.status == scree::RunStatus::interrupted) fmt::print(stderr, "scree: interrupted; the results so far are complete\n");
-  return result.status == scree::RunStatus::done ? kDone : result.status == scree::RunStatus::failed ? kFailed : kInterrupted;
+  if (result.status == scree::RunStatus::interrupted)
+    fmt::print(stderr, "scree: interrupted; the results so far are complete\n");
+  return result.status == scree::RunStatus::done     ? kDone
+         : result.status == scree::RunStatus::failed ? kFailed
+                                                     : kInterrupted;
 }
 
 int check(const Arguments& a) {
@@ -76,28 +81,35 @@ int check(const Arguments& a) {
 
 void add_case_options(CLI::App& command, Arguments& a) {
   command.add_option("CASE", a.case_file, "the case file (TOML)")->required();
-  command.add_option("--set", a.set, "change a key of the case: key.path=value, e.g. lattice.fibre_diameter=1.36e-3,\nmaterial.steel.youngs_modulus=1e8, contact.rolling=cdt; may be repeated");
-  command.add_option("--threads", a.threads, "threads (default: all processors); the results do not depend on it")->check(CLI::Range(1, 4096));
+  command.add_option(
+      "--set", a.set,
+      "change a key of the case: key.path=value, e.g. "
+      "lattice.fibre_diameter=1.36e-3,\nmaterial.steel.youngs_modulus=1e8, contact.rolling=cdt; may be repeated");
+  command.add_option("--threads", a.threads, "threads (default: all processors); the results do not depend on it")
+      ->check(CLI::Range(1, 4096));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Scree: discrete element simulation of granular flow.\n\n"
-               "A case file says what is simulated: materials, particles, walls and fibres, and the stages\n"
-               "of the run (fill, settle, open a lid, drain). Start from a commented one:\n"
-               "  scree run cases/olhx/demo.toml          the Octet-lattice heat exchanger, small\n"
-               "  scree check cases/olhx/paper_088.toml   what would run, how long, how much memory\n"
-               "  ls cases/examples                       one example per feature\n"};
-  app.footer("Results: mass_flow.csv, meters.csv, summary.json, particles.vtp (ParaView, OVITO), case.toml, run.log.\n"
-             "Exit codes: 0 done, 2 bad input, 3 the run failed, 130 interrupted (Ctrl-C ends a run cleanly).");
+  CLI::App app{
+      "Scree: discrete element simulation of granular flow.\n\n"
+      "A case file says what is simulated: materials, particles, walls and fibres, and the stages\n"
+      "of the run (fill, settle, open a lid, drain). Start from a commented one:\n"
+      "  scree run cases/olhx/demo.toml          the Octet-lattice heat exchanger, small\n"
+      "  scree check cases/olhx/paper_088.toml   what would run, how long, how much memory\n"
+      "  ls cases/examples                       one example per feature\n"};
+  app.footer(
+      "Results: mass_flow.csv, meters.csv, summary.json, particles.vtp (ParaView, OVITO), case.toml, run.log.\n"
+      "Exit codes: 0 done, 2 bad input, 3 the run failed, 130 interrupted (Ctrl-C ends a run cleanly).");
   app.set_version_flag("--version", "scree 0.1.0");
   app.require_subcommand(1);
   Arguments a;
   CLI::App& run_command = *app.add_subcommand("run", "run a case");
   add_case_options(run_command, a);
   run_command.add_option("--out", a.out, "results folder (default: results/<case>, or the next free name)");
-  run_command.add_option("--isa", a.isa, "instruction set of the kernels (default: the best this machine has)")->check(CLI::IsMember(scree::available_isas()));
+  run_command.add_option("--isa", a.isa, "instruction set of the kernels (default: the best this machine has)")
+      ->check(CLI::IsMember(scree::available_isas()));
   CLI::App& check_command = *app.add_subcommand("check", "validate a case and print what would run");
   add_case_options(check_command, a);
   try {

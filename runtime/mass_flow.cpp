@@ -7,14 +7,15 @@ namespace scree {
 
 namespace {
 
-constexpr int kBins = 40;                 // of the stretch that is searched
+constexpr int kBins = 40;  // of the stretch that is searched
 constexpr int kFewestBins = kBins / 5;
 constexpr int kParts = 5;                  // of a window, each of which must flow like the whole:
 constexpr double kSteadyTolerance = 0.08;  // of the mean; catches the surge when a lid opens, lets scatter pass
-constexpr int kErrorBins = 8;             // independent stretches for the standard error
+constexpr int kErrorBins = 8;              // independent stretches for the standard error
 
 double interpolate(const std::vector<FlowSample>& samples, double t) {
-  const auto after = std::lower_bound(samples.begin(), samples.end(), t, [](const FlowSample& s, double time) { return s.time < time; });
+  const auto after = std::lower_bound(samples.begin(), samples.end(), t,
+                                      [](const FlowSample& s, double time) { return s.time < time; });
   if (after == samples.begin()) return samples.front().total();
   if (after == samples.end()) return samples.back().total();
   const auto before = after - 1;
@@ -30,7 +31,8 @@ bool is_steady(const std::vector<FlowSample>& samples, double a, double b) {
   const double mean = rate_between(samples, a, b), part = (b - a) / kParts;
   if (mean <= 0) return false;
   for (int k = 0; k < kParts; ++k)
-    if (std::abs(rate_between(samples, a + k * part, a + (k + 1) * part) - mean) > kSteadyTolerance * mean) return false;
+    if (std::abs(rate_between(samples, a + k * part, a + (k + 1) * part) - mean) > kSteadyTolerance * mean)
+      return false;
   return true;
 }
 

@@ -25,9 +25,9 @@ struct SteadyFlow {
   int bins = 0;                         // independent stretches that the standard error comes from
 };
 
-// The longest window in which the flow neither trends nor wanders: each fifth of it flows like the whole, within 8 %. Of
-// equally long ones the one with the highest rate. Rate: slope between the window's ends. Standard error: from the scatter
-// of the means of eight stretches. Nothing if there is no such window of at least a fifth of [from, to].
+// The longest window in which the flow neither trends nor wanders: each fifth of it flows like the whole, within 8 %.
+// Of equally long ones the one with the highest rate. Rate: slope between the window's ends. Standard error: from the
+// scatter of the means of eight stretches. Nothing if there is no such window of at least a fifth of [from, to].
 std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& samples, double from, double to);
 
 // The same quantities for a window that the user named.

@@ -32,7 +32,8 @@ ParticleSource::ParticleSource(const Case& c, const Mixture& mixture, uint64_t s
 double ParticleSource::draw_diameter(const SizeDistribution& size) {
   for (;;) {
     const double z = random_.normal();
-    const double d = size.kind == SizeDistribution::Kind::normal ? size.mean + size.deviation * z : size.mean * std::exp(size.deviation * z);
+    const double d = size.kind == SizeDistribution::Kind::normal ? size.mean + size.deviation * z
+                                                                 : size.mean * std::exp(size.deviation * z);
     if (d >= size.min && d <= size.max) return d;
   }
 }

@@ -27,7 +27,8 @@ Vec3 clamped(const Vec3& x, const Vec3& low, const Vec3& high) {
 // Spheres binned over a box, for questions about overlap.
 class SphereBins {
  public:
-  SphereBins(const Bounds& box, double largest_radius) : low_(inflated(box, 2 * largest_radius).min), cell_(2 * largest_radius) {
+  SphereBins(const Bounds& box, double largest_radius)
+      : low_(inflated(box, 2 * largest_radius).min), cell_(2 * largest_radius) {
     const Vec3 size = inflated(box, 2 * largest_radius).max - low_;
     for (int a = 0; a < 3; ++a) n_[a] = static_cast<int>((a == 0 ? size.x : a == 1 ? size.y : size.z) / cell_) + 1;
     cells_.resize(size_t(n_[0]) * n_[1] * n_[2]);
@@ -74,7 +75,8 @@ FreeSpace::FreeSpace(const Region& region, const Solid& solid)
 
 Vec3 FreeSpace::inside_region(const Vec3& x, double radius) const {
   const Region& r = region_;
-  if (r.shape == Region::Shape::box) return clamped(x, r.min + Vec3{radius, radius, radius}, r.max - Vec3{radius, radius, radius});
+  if (r.shape == Region::Shape::box)
+    return clamped(x, r.min + Vec3{radius, radius, radius}, r.max - Vec3{radius, radius, radius});
   if (r.shape == Region::Shape::cylinder) {
     const double h = dot(x - r.base, r.axis);
     Vec3 out = (x - r.base) - h * r.axis;
@@ -136,7 +138,8 @@ double FreeSpace::volume() const {
 namespace {
 
 // Draws until the region's share or the stage's amount is reached.
-std::vector<ParticleState> draw_share(const FillStage& stage, double volume, double mass_left, uint64_t count_left, ParticleSource& source) {
+std::vector<ParticleState> draw_share(const FillStage& stage, double volume, double mass_left, uint64_t count_left,
+                                      ParticleSource& source) {
   std::vector<ParticleState> drawn;
   double sum = 0, mass = 0;
   for (;;) {
@@ -164,8 +167,8 @@ void place_at_random(std::vector<PackedSphere>& spheres, const FreeSpace& space,
 
 }  // namespace
 
-std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Solid& solid, std::span<const ParticleState> present,
-                                uint64_t stream) {
+std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Solid& solid,
+                                std::span<const ParticleState> present, uint64_t stream) {
   ParticleSource source(c, stage.mixture, c.seed, stream);
   Random random(c.seed, stream + 1000);
   std::vector<ParticleState> placed;
@@ -174,16 +177,19 @@ std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Sol
   double mass = 0;
   for (const uint32_t r : stage.regions) {
     const FreeSpace space(c.regions[r], solid);
-    std::vector<ParticleState> share =
-        draw_share(stage, stage.solid_fraction * space.volume(), stage.mass - mass, stage.count - placed.size(), source);
+    std::vector<ParticleState> share = draw_share(stage, stage.solid_fraction * space.volume(), stage.mass - mass,
+                                                  stage.count - placed.size(), source);
     std::vector<PackedSphere> spheres(share.size());
     for (size_t k = 0; k < share.size(); ++k) spheres[k].radius = share[k].radius;
     place_at_random(spheres, space, random);
-    const PackingOutcome outcome = push_apart(spheres, fixed, [&](const Vec3& x, double radius) { return space.confine(x, radius); }, kPackingIterations);
+    const PackingOutcome outcome = push_apart(
+        spheres, fixed, [&](const Vec3& x, double radius) { return space.confine(x, radius); }, kPackingIterations);
     if (outcome.worst_overlap > 0 || !outcome.confined)
-      throw RunError(fmt::format("region '{}' cannot hold {} particles without overlap (solid_fraction {}; after {} iterations the worst overlap is "
-                                 "{:.3g} of a radius): lower the stage's solid_fraction, or enlarge the region",
-                                 c.regions[r].name, share.size(), stage.solid_fraction, outcome.iterations, outcome.worst_overlap));
+      throw RunError(fmt::format(
+          "region '{}' cannot hold {} particles without overlap (solid_fraction {}; after {} iterations the worst "
+          "overlap is "
+          "{:.3g} of a radius): lower the stage's solid_fraction, or enlarge the region",
+          c.regions[r].name, share.size(), stage.solid_fraction, outcome.iterations, outcome.worst_overlap));
     for (size_t k = 0; k < share.size(); ++k) {
       share[k].position = spheres[k].position;
       share[k].velocity = stage.velocity;
@@ -192,15 +198,22 @@ std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Sol
     }
     placed.insert(placed.end(), share.begin(), share.end());
   }
-  const bool short_of_mass = stage.mass > 0 && mass < stage.mass - (placed.empty() ? 0 : 2 * placed.back().mass) - 1e-3 * stage.mass;
+  const bool short_of_mass =
+      stage.mass > 0 && mass < stage.mass - (placed.empty() ? 0 : 2 * placed.back().mass) - 1e-3 * stage.mass;
   if (short_of_mass || placed.size() < stage.count)
-    throw RunError(fmt::format("the fill stage's regions hold {} particles, {:.6g} kg, at solid_fraction {}; asked for {}: enlarge or add regions, or raise solid_fraction (at most 0.6)",
-                               placed.size(), mass, stage.solid_fraction, stage.mass > 0 ? fmt::format("{:.6g} kg", stage.mass) : fmt::format("{}", stage.count)));
+    throw RunError(
+        fmt::format("the fill stage's regions hold {} particles, {:.6g} kg, at solid_fraction {}; asked for {}: "
+                    "enlarge or add regions, or raise solid_fraction (at most 0.6)",
+                    placed.size(), mass, stage.solid_fraction,
+                    stage.mass > 0 ? fmt::format("{:.6g} kg", stage.mass) : fmt::format("{}", stage.count)));
   return placed;
 }
 
 Pour::Pour(const Case& c, const PourStage& stage, const Solid& solid, uint64_t stream)
-    : stage_(stage), space_(c.regions[stage.region], solid), source_(c, stage.mixture, c.seed, stream), random_(c.seed, stream + 1000) {
+    : stage_(stage),
+      space_(c.regions[stage.region], solid),
+      source_(c, stage.mixture, c.seed, stream),
+      random_(c.seed, stream + 1000) {
   const double per_kg = particles_per_mass(c, stage.mixture);
   double mean_volume = 0;
   for (size_t k = 0; k < stage.mixture.kinds.size(); ++k)

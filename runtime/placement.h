@@ -34,10 +34,10 @@ class FreeSpace {
   std::unique_ptr<SolidIndex> index_;
 };
 
-// A dense random packing: regions in order, each up to the stage's solid fraction of its free space, until mass or count
-// is reached. Throws RunError if they do not fit.
-std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Solid& solid, std::span<const ParticleState> present,
-                                uint64_t stream);
+// A dense random packing: regions in order, each up to the stage's solid fraction of its free space, until mass or
+// count is reached. Throws RunError if they do not fit.
+std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Solid& solid,
+                                std::span<const ParticleState> present, uint64_t stream);
 
 // One pour: owes what the rate has brought, places what finds room.
 class Pour {

@@ -26,8 +26,10 @@ void Progress::update(double time, size_t particles, double particle_steps, doub
   const double rate = (particle_steps - last_particle_steps_) / since;
   last_ = now, last_particle_steps_ = particle_steps;
   const double elapsed = std::chrono::duration<double>(now - stage_start_).count();
-  const std::string eta = done > 1e-3 ? fmt::format("{:3.0f} %, {} left", 100 * done, duration_text(elapsed * (1 - done) / done)) : "";
-  fmt::print(stderr, "\r\033[K{:<8} t = {:.4f} s  {} particles  {:.2f} M particle-steps/s  {}", stage_, time, particles, rate / 1e6, eta);
+  const std::string eta =
+      done > 1e-3 ? fmt::format("{:3.0f} %, {} left", 100 * done, duration_text(elapsed * (1 - done) / done)) : "";
+  fmt::print(stderr, "\r\033[K{:<8} t = {:.4f} s  {} particles  {:.2f} M particle-steps/s  {}", stage_, time, particles,
+             rate / 1e6, eta);
   std::fflush(stderr);
   drawn_ = true;
 }

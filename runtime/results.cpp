@@ -53,7 +53,9 @@ class AppendedData {
  public:
   template <class T, class Get>
   std::string array(std::string_view name, std::string_view type, int components, size_t count, const Get& get) {
-    const std::string header = fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)", type, name, components, bytes_.size());
+    const std::string header =
+        fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)", type,
+                    name, components, bytes_.size());
     const uint64_t size = count * components * sizeof(T);
     append(&size, sizeof size);
     for (size_t k = 0; k < count; ++k)
@@ -79,8 +81,10 @@ void write_particles_vtp(const std::filesystem::path& path, std::span<const Part
   const size_t n = p.size();
   std::string point_data, points, verts;
   point_data += data.array<float>("radius", "Float32", 1, n, [&](size_t k, int) { return p[k].radius; });
-  point_data += data.array<float>("velocity", "Float32", 3, n, [&](size_t k, int c) { return component(p[k].velocity, c); });
-  point_data += data.array<float>("angular_velocity", "Float32", 3, n, [&](size_t k, int c) { return component(p[k].spin, c); });
+  point_data +=
+      data.array<float>("velocity", "Float32", 3, n, [&](size_t k, int c) { return component(p[k].velocity, c); });
+  point_data +=
+      data.array<float>("angular_velocity", "Float32", 3, n, [&](size_t k, int c) { return component(p[k].spin, c); });
   point_data += data.array<float>("mass", "Float32", 1, n, [&](size_t k, int) { return p[k].mass; });
   point_data += data.array<int64_t>("id", "Int64", 1, n, [&](size_t k, int) { return p[k].id; });
   point_data += data.array<int32_t>("kind", "Int32", 1, n, [&](size_t k, int) { return p[k].kind; });
@@ -88,12 +92,15 @@ void write_particles_vtp(const std::filesystem::path& path, std::span<const Part
   verts += data.array<int64_t>("connectivity", "Int64", 1, n, [](size_t k, int) { return k; });
   verts += data.array<int64_t>("offsets", "Int64", 1, n, [](size_t k, int) { return k + 1; });
   const char* order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-  write_file(path, fmt::format(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n"
-      "<PolyData><Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
-      "<PointData Scalars=\"radius\" Vectors=\"velocity\">\n{}</PointData>\n<Points>\n{}</Points>\n<Verts>\n{}</Verts>\n"
-      "</Piece></PolyData>\n<AppendedData encoding=\"raw\">\n_{}\n</AppendedData>\n</VTKFile>\n",
-      order, n, n, point_data, points, verts, data.bytes()));
+  write_file(path,
+             fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"{}\" "
+                         "header_type=\"UInt64\">\n"
+                         "<PolyData><Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
+                         "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
+                         "<PointData Scalars=\"radius\" "
+                         "Vectors=\"velocity\">\n{}</PointData>\n<Points>\n{}</Points>\n<Verts>\n{}</Verts>\n"
+                         "</Piece></PolyData>\n<AppendedData encoding=\"raw\">\n_{}\n</AppendedData>\n</VTKFile>\n",
+                         order, n, n, point_data, points, verts, data.bytes()));
 }
 
 }  // namespace scree

@@ -33,8 +33,8 @@ class CsvWriter {
 // Writes a whole file, to a temporary name first. Throws RunError naming the file and the reason.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-// Particles as VTK PolyData (.vtp, XML, binary): points with radius, velocity, angular_velocity, id, kind, mass. Opens in
-// ParaView (Glyph: sphere, scale by radius) and in OVITO.
+// Particles as VTK PolyData (.vtp, XML, binary): points with radius, velocity, angular_velocity, id, kind, mass. Opens
+// in ParaView (Glyph: sphere, scale by radius) and in OVITO.
 void write_particles_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles);
 
 }  // namespace scree

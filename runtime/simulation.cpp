@@ -9,9 +9,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include "geometry/bounds.h"
 #include "kernels/parallel.h"
@@ -45,8 +45,13 @@ struct StageRecord {
 class Simulation {
  public:
   Simulation(const Case& c, const RunOptions& options, std::shared_ptr<spdlog::logger> log)
-      : case_(c), options_(options), log_(std::move(log)), solid_(c.solid), engine_(make_engine(c, options.engine)),
-        progress_(options.show_progress), flow_csv_(options.out / "mass_flow.csv", {"time_s", "discharged_kg", "mass_flow_kg_per_s"}) {
+      : case_(c),
+        options_(options),
+        log_(std::move(log)),
+        solid_(c.solid),
+        engine_(make_engine(c, options.engine)),
+        progress_(options.show_progress),
+        flow_csv_(options.out / "mass_flow.csv", {"time_s", "discharged_kg", "mass_flow_kg_per_s"}) {
     if (!c.outlets.empty())
       engine_->set_removal([&outlets = case_.outlets](const ParticleState& p) {
         for (size_t k = 0; k < outlets.size(); ++k)
@@ -89,7 +94,8 @@ class Simulation {
       if (r.kind != "drain") continue;
       const double end = r.end > r.start ? r.end : engine_->time();
       const OutputSettings& o = case_.output;
-      return o.steady_to > 0 ? steady_flow_in(samples_, r.start + o.steady_from, r.start + o.steady_to) : find_steady_flow(samples_, r.start, end);
+      return o.steady_to > 0 ? steady_flow_in(samples_, r.start + o.steady_from, r.start + o.steady_to)
+                             : find_steady_flow(samples_, r.start, end);
     }
     return std::nullopt;
   }
@@ -98,7 +104,8 @@ class Simulation {
   void begin(const std::string& name, const std::string& kind) {
     records_.push_back({name.empty() ? kind : name, kind, engine_->time(), 0, 0});
     progress_.begin(records_.back().name);
-    log_->info("stage '{}' ({}) begins at t = {:.6g} s with {} particles", records_.back().name, kind, engine_->time(), engine_->count());
+    log_->info("stage '{}' ({}) begins at t = {:.6g} s with {} particles", records_.back().name, kind, engine_->time(),
+               engine_->count());
   }
   double stage_time() const { return engine_->time() - records_.back().start; }
 
@@ -111,7 +118,8 @@ class Simulation {
         engine_->step();
         if (engine_->counters().steps % steps_per_sample_ == 0) sample();
       }
-      progress_.update(engine_->time(), engine_->count(), static_cast<double>(engine_->counters().particle_steps), share());
+      progress_.update(engine_->time(), engine_->count(), static_cast<double>(engine_->counters().particle_steps),
+                       share());
       log_now_and_then();
       if (options_.stop && *options_.stop) throw Interrupted{};
     }
@@ -140,7 +148,9 @@ class Simulation {
       ParticleState state;
       state.kind = p.kind.empty() ? s.kind : kind_named(p, s.file);
       if (!contains(case_.domain, p.position))
-        throw CaseError({s.file, p.line, 1}, fmt::format("the particle at ({:.6g}, {:.6g}, {:.6g}) m is outside the domain", p.position.x, p.position.y, p.position.z));
+        throw CaseError({s.file, p.line, 1},
+                        fmt::format("the particle at ({:.6g}, {:.6g}, {:.6g}) m is outside the domain", p.position.x,
+                                    p.position.y, p.position.z));
       state.position = p.position, state.velocity = p.velocity, state.radius = p.radius;
       state.mass = sphere_mass(p.radius, case_.materials[case_.kinds[state.kind].material].density);
       particles.push_back(state);
@@ -158,8 +168,10 @@ class Simulation {
       const std::vector<ParticleState> placed = pour.batch(stage_time(), engine_->particles());
       if (!placed.empty()) last_placed = stage_time();
       if (stage_time() - last_placed > std::max(0.2, 20 * pour.batch_interval()) && !pour.done())
-        throw RunError(fmt::format("stage '{}': the region '{}' has been full for {:.3g} s after {:.4g} kg: lower the rate or the mass, or pour from higher up",
-                                   records_.back().name, case_.regions[s.region].name, stage_time() - last_placed, pour.mass()));
+        throw RunError(
+            fmt::format("stage '{}': the region '{}' has been full for {:.3g} s after {:.4g} kg: lower the rate or the "
+                        "mass, or pour from higher up",
+                        records_.back().name, case_.regions[s.region].name, stage_time() - last_placed, pour.mass()));
       engine_->insert(placed);
       next += pour.batch_interval();
       return pour.done();
@@ -188,12 +200,13 @@ class Simulation {
     for (uint32_t k = 0; k < solid_.walls.size(); ++k)
       if (std::find(s.walls.begin(), s.walls.end(), solid_.walls[k]) != s.walls.end()) walls.push_back(k);
     engine_->open_walls(walls);
-    std::erase_if(solid_.primitives, [&](const Primitive& p) { return std::find(walls.begin(), walls.end(), p.wall) != walls.end(); });
+    std::erase_if(solid_.primitives,
+                  [&](const Primitive& p) { return std::find(walls.begin(), walls.end(), p.wall) != walls.end(); });
   }
 
   void run_stage(const std::string& name, const DrainStage& s) {
     begin(name, "drain");
-    const double present = engine_->sum([](const ParticleState& p) { return p.mass; }), before = discharged();
+    const double present = engine_->sum([](const ParticleState&p) { return p.mass; }), before = discharged();
     double last_mass = before, last_change = 0;
     const auto drained = [&] { return present > 0 ? (discharged() - before) / present : 1.0; };
     const auto over = [&] {
@@ -223,7 +236,8 @@ class Simulation {
   void sample() {
     if (!samples_.empty() && samples_.back().time >= engine_->time()) return;
     FlowSample now{engine_->time(), discharged_by_outlet()};
-    const double rate = samples_.empty() ? 0 : (now.total() - samples_.back().total()) / (now.time - samples_.back().time);
+    const double rate =
+        samples_.empty() ? 0 : (now.total() - samples_.back().total()) / (now.time - samples_.back().time);
     flow_csv_.row(std::array{now.time, now.total(), rate});
     samples_.push_back(std::move(now));
     if (!meters_csv_) return;
@@ -231,7 +245,9 @@ class Simulation {
     for (const Meter& m : case_.meters)
       row.push_back(engine_->sum([&](const ParticleState& p) {
         const Vec3& x = p.position;
-        return x.x >= m.min.x && x.x <= m.max.x && x.y >= m.min.y && x.y <= m.max.y && x.z >= m.min.z && x.z <= m.max.z ? p.mass : 0.0;
+        return x.x >= m.min.x && x.x <= m.max.x && x.y >= m.min.y && x.y <= m.max.y && x.z >= m.min.z && x.z <= m.max.z
+                   ? p.mass
+                   : 0.0;
       }));
     meters_csv_->row(row);
   }
@@ -240,13 +256,16 @@ class Simulation {
     if (seconds_since(last_log_) < 10) return;
     last_log_ = Clock::now();
     const EngineCounters& k = engine_->counters();
-    log_->info("t = {:.6g} s  {} particles  {:.3g} m/s at most  {} steps  {} rebuilds  skin {:.3g} m", engine_->time(), engine_->count(), engine_->max_speed(), k.steps, k.rebuilds, engine_->skin());
+    log_->info("t = {:.6g} s  {} particles  {:.3g} m/s at most  {} steps  {} rebuilds  skin {:.3g} m", engine_->time(),
+               engine_->count(), engine_->max_speed(), k.steps, k.rebuilds, engine_->skin());
   }
 
   void check_count() const {
     const EngineCounters& k = engine_->counters();
     if (k.inserted != k.removed + engine_->count())
-      throw RunError(fmt::format("{} particles went in, {} left through outlets, {} are left: {} lost", k.inserted, k.removed, engine_->count(), static_cast<int64_t>(k.inserted - k.removed - engine_->count())));
+      throw RunError(fmt::format("{} particles went in, {} left through outlets, {} are left: {} lost", k.inserted,
+                                 k.removed, engine_->count(),
+                                 static_cast<int64_t>(k.inserted - k.removed - engine_->count())));
   }
 
   const Case& case_;
@@ -263,7 +282,9 @@ class Simulation {
   Clock::time_point last_log_ = Clock::now();
 };
 
-const char* text(RunStatus s) { return s == RunStatus::done ? "done" : s == RunStatus::interrupted ? "interrupted" : "failed"; }
+const char* text(RunStatus s) {
+  return s == RunStatus::done ? "done" : s == RunStatus::interrupted ? "interrupted" : "failed";
+}
 
 nlohmann::json summary_of(const Case& c, const Simulation& simulation, const RunResult& result, double wall) {
   const Engine& e = simulation.engine();
@@ -275,7 +296,8 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
   if (!result.message.empty()) j["message"] = result.message;
   j["particles"] = k.inserted, j["particles_left"] = e.count(), j["steps"] = k.steps;
   j["time_step_s"] = e.dt(), j["physical_time_s"] = e.time(), j["wall_time_s"] = wall;
-  j["particle_steps"] = k.particle_steps, j["particle_steps_per_second"] = wall > 0 ? static_cast<double>(k.particle_steps) / wall : 0;
+  j["particle_steps"] = k.particle_steps,
+  j["particle_steps_per_second"] = wall > 0 ? static_cast<double>(k.particle_steps) / wall : 0;
   j["peak_rss_bytes"] = static_cast<uint64_t>(usage.ru_maxrss) * 1024;
   j["threads"] = thread_count(), j["isa"] = e.isa();
   j["mass_discharged_kg"] = simulation.discharged();
@@ -285,25 +307,37 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
     return p.mass;
   });
   if (result.steady) {
-    j["steady_mass_flow_kg_per_s"] = result.steady->rate, j["steady_mass_flow_standard_error_kg_per_s"] = result.steady->standard_error;
+    j["steady_mass_flow_kg_per_s"] = result.steady->rate,
+    j["steady_mass_flow_standard_error_kg_per_s"] = result.steady->standard_error;
     j["steady_window_s"] = {result.steady->from, result.steady->to}, j["steady_bins"] = result.steady->bins;
   } else {
-    j["steady_mass_flow_kg_per_s"] = nullptr, j["steady_mass_flow_standard_error_kg_per_s"] = nullptr, j["steady_window_s"] = nullptr;
+    j["steady_mass_flow_kg_per_s"] = nullptr, j["steady_mass_flow_standard_error_kg_per_s"] = nullptr,
+    j["steady_window_s"] = nullptr;
   }
   j["rebuilds"] = k.rebuilds;
-  j["lost_particles"] = static_cast<int64_t>(k.inserted) - static_cast<int64_t>(k.removed) - static_cast<int64_t>(e.count());
+  j["lost_particles"] =
+      static_cast<int64_t>(k.inserted) - static_cast<int64_t>(k.removed) - static_cast<int64_t>(e.count());
   j["state_hash"] = fmt::format("{:016x}", e.state_hash());
   j["porosity"] = c.fibres.count > 0 ? nlohmann::json(c.fibres.porosity) : nlohmann::json();
   j["fibres"] = c.fibres.count;
   for (const StageRecord& r : simulation.records())
-    j["stages"].push_back({{"name", r.name}, {"kind", r.kind}, {"start_s", r.start}, {"end_s", std::max(r.start, r.end)}, {"particles", r.particles}});
-  j["wall_seconds"] = {{"step", k.step_seconds}, {"history", k.history_seconds}, {"sort", k.sort_seconds}, {"pair_search", k.pair_search_seconds}, {"solid_search", k.solid_search_seconds}};
+    j["stages"].push_back({{"name", r.name},
+                           {"kind", r.kind},
+                           {"start_s", r.start},
+                           {"end_s", std::max(r.start, r.end)},
+                           {"particles", r.particles}});
+  j["wall_seconds"] = {{"step", k.step_seconds},
+                       {"history", k.history_seconds},
+                       {"sort", k.sort_seconds},
+                       {"pair_search", k.pair_search_seconds},
+                       {"solid_search", k.solid_search_seconds}};
   return j;
 }
 
 std::shared_ptr<spdlog::logger> make_log(const std::filesystem::path& out) {
   try {
-    auto log = std::make_shared<spdlog::logger>("scree", std::make_shared<spdlog::sinks::basic_file_sink_mt>((out / "run.log").string(), true));
+    auto log = std::make_shared<spdlog::logger>(
+        "scree", std::make_shared<spdlog::sinks::basic_file_sink_mt>((out / "run.log").string(), true));
     log->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
     log->flush_on(spdlog::level::info);
     return log;
@@ -327,7 +361,8 @@ RunResult run_case(const Case& c, const RunOptions& options) {
   try {
     std::error_code error;
     std::filesystem::create_directories(options.out, error);
-    if (error) throw RunError(fmt::format("cannot make the results folder {}: {}", options.out.string(), error.message()));
+    if (error)
+      throw RunError(fmt::format("cannot make the results folder {}: {}", options.out.string(), error.message()));
     log = make_log(options.out);
     if (options.threads > 0) set_thread_count(options.threads);
     write_file(options.out / "case.toml", write_case(c));

@@ -13,7 +13,7 @@ namespace scree {
 
 struct RunOptions {
   std::filesystem::path out;
-  int threads = 0;           // 0: all processors
+  int threads = 0;             // 0: all processors
   bool show_progress = false;  // on a terminal
   EngineOptions engine;
   const volatile std::sig_atomic_t* stop = nullptr;  // set from outside (Ctrl-C): the run ends with what it has
@@ -29,7 +29,8 @@ struct RunResult {
 };
 
 // Writes run.log, case.toml, mass_flow.csv, meters.csv (when the case has meters), particles.vtp, summary.json into
-// options.out, whatever the end. Throws CaseError for a case that cannot start; never RunError: a failed run is a result.
+// options.out, whatever the end. Throws CaseError for a case that cannot start; never RunError: a failed run is a
+// result.
 RunResult run_case(const Case& c, const RunOptions& options);
 
 // What `scree check` prints: what will run, its time scales, memory (runtime/describe_case.cpp).

@@ -9,10 +9,10 @@
 namespace scree {
 
 struct TimeScales {
-  double step = 0;       // s
-  double rayleigh = 0;   // s, smallest over particles
-  double hertz = 0;      // s, at `speed`
-  double speed = 0;      // m/s, free fall through the domain: an upper bound for what gravity drives
+  double step = 0;      // s
+  double rayleigh = 0;  // s, smallest over particles
+  double hertz = 0;     // s, at `speed`
+  double speed = 0;     // m/s, free fall through the domain: an upper bound for what gravity drives
 };
 
 TimeScales time_scales(const Case& c);

@@ -22,7 +22,8 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     static int number = 0;
-    path_ = std::filesystem::temp_directory_path() / ("scree_test_" + std::to_string(getpid()) + "_" + std::to_string(number++));
+    path_ = std::filesystem::temp_directory_path() /
+            ("scree_test_" + std::to_string(getpid()) + "_" + std::to_string(number++));
     std::filesystem::create_directories(path_);
   }
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
@@ -52,8 +53,10 @@ inline Table read_table(const std::filesystem::path& path) {
     std::istringstream cells(line);
     if (!header) t.rows.emplace_back();
     while (std::getline(cells, cell, ',')) {
-      if (header) t.columns.push_back(cell);
-      else t.rows.back().push_back(std::stod(cell));
+      if (header)
+        t.columns.push_back(cell);
+      else
+        t.rows.back().push_back(std::stod(cell));
     }
   }
   return t;
@@ -70,7 +73,8 @@ inline nlohmann::json read_summary(const std::filesystem::path& out) {
   return nlohmann::json::parse(file);
 }
 
-inline RunResult run_to(const std::filesystem::path& out, const std::string& name, const std::vector<std::string>& overrides = {}) {
+inline RunResult run_to(const std::filesystem::path& out, const std::string& name,
+                        const std::vector<std::string>& overrides = {}) {
   RunOptions options;
   options.out = out;
   return run_case(read_case(case_path(name), overrides), options);

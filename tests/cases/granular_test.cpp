@@ -13,10 +13,12 @@ SteadyFlow silo_discharge(double diameter, double mass) {
   const TemporaryFolder folder;
   const auto out = folder.path() / "silo";
   const auto set = [](const std::string& key, double value) { return key + "=" + std::to_string(value); };
-  const RunResult r = run_to(out, "examples/orifice_silo.toml",
-                             {set("wall.box.radius", 0.009), set("wall.bottom.outer_radius", 0.009), set("region.inside.radius", 0.0084),
-                              set("wall.bottom.inner_radius", diameter / 2), set("wall.plug.radius", diameter / 2), set("stage.fill.mass", mass),
-                              "time.rayleigh_fraction=0.3", "stage.settle.time=0.08", "stage.drain.discharged_fraction=0.5"});
+  const RunResult r =
+      run_to(out, "examples/orifice_silo.toml",
+             {set("wall.box.radius", 0.009), set("wall.bottom.outer_radius", 0.009),
+              set("region.inside.radius", 0.0084), set("wall.bottom.inner_radius", diameter / 2),
+              set("wall.plug.radius", diameter / 2), set("stage.fill.mass", mass), "time.rayleigh_fraction=0.3",
+              "stage.settle.time=0.08", "stage.drain.discharged_fraction=0.5"});
   EXPECT_EQ(r.status, RunStatus::done) << r.message;
   EXPECT_TRUE(r.steady.has_value()) << "no plateau for an orifice of " << diameter << " m";
   return r.steady.value_or(SteadyFlow{});
@@ -37,23 +39,29 @@ TEST(Beverloo, discharge_scales_with_the_orifice_to_the_power_five_halves) {
 
 TEST(Beverloo, discharge_does_not_depend_on_the_height_of_the_fill) {
   const SteadyFlow low = silo_discharge(7.5e-3, 6e-3), high = silo_discharge(7.5e-3, 12e-3);
-  std::printf("6 g: %.3f +- %.3f g/s, 12 g: %.3f +- %.3f g/s\n", 1e3 * low.rate, 1e3 * low.standard_error, 1e3 * high.rate, 1e3 * high.standard_error);
+  std::printf("6 g: %.3f +- %.3f g/s, 12 g: %.3f +- %.3f g/s\n", 1e3 * low.rate, 1e3 * low.standard_error,
+              1e3 * high.rate, 1e3 * high.standard_error);
   EXPECT_NEAR(high.rate / low.rate, 1, 0.1);  // a liquid's would grow by the root of two
 }
 
 double mass_kept_on_plate(double rolling_friction) {
   const TemporaryFolder folder;
   const auto out = folder.path() / "pile";
-  const RunResult r = run_to(out, "examples/angle_of_repose.toml", {"pair.glass+glass.rolling_friction=" + std::to_string(rolling_friction), "time.rayleigh_fraction=0.3"});
+  const RunResult r = run_to(
+      out, "examples/angle_of_repose.toml",
+      {"pair.glass+glass.rolling_friction=" + std::to_string(rolling_friction), "pair.glass+glass.sliding_friction=0.6",
+       "pair.glass+steel.sliding_friction=0.6", "time.rayleigh_fraction=0.3"});
   EXPECT_EQ(r.status, RunStatus::done) << r.message;
   return read_summary(out)["mass_retained_kg"];
 }
 
 TEST(AngleOfRepose, grows_with_rolling_friction) {
   // A cone on a plate of fixed radius: the mass that stays measures the slope's tangent.
-  const double low = mass_kept_on_plate(0.01), high = mass_kept_on_plate(0.4);
-  std::printf("kept on the plate: %.3f g at 0.01, %.3f g at 0.4\n", 1e3 * low, 1e3 * high);
-  EXPECT_GT(high, 1.15 * low);
+  const double low = mass_kept_on_plate(0.01), middle = mass_kept_on_plate(0.1), high = mass_kept_on_plate(0.5);
+  std::printf("kept on the plate: %.3f g at 0.01, %.3f g at 0.1, %.3f g at 0.5\n", 1e3 * low, 1e3 * middle, 1e3 * high);
+  EXPECT_GT(middle, low);
+  EXPECT_GT(high, middle);
+  EXPECT_GT(high, 1.1 * low);
 }
 
 }  // namespace

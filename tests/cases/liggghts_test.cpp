@@ -18,9 +18,11 @@ TEST(Liggghts, small_octet_lattice_drains_alike) {
   ASSERT_EQ(result.status, RunStatus::done) << result.message;
   const Table ours = read_table(out / "meters.csv");
   const Table theirs = read_table(case_path("olhx/reference/drain_liggghts.csv"));
-  std::vector<double> t = ours.column("time_s"), in_lattice = ours.column("lattice_kg"), above = ours.column("above_exit_kg");
+  std::vector<double> t = ours.column("time_s"), in_lattice = ours.column("lattice_kg"),
+                      above = ours.column("above_exit_kg");
   for (double& time : t) time -= 0.01;  // the lid opens at 0.01 s
-  const std::vector<double> t_ref = theirs.column("t_s"), in_ref = theirs.column("mass_in_lattice_kg"), above_ref = theirs.column("mass_above_exit_kg");
+  const std::vector<double> t_ref = theirs.column("t_s"), in_ref = theirs.column("mass_in_lattice_kg"),
+                            above_ref = theirs.column("mass_above_exit_kg");
 
   double worst_in = 0, worst_above = 0;
   for (size_t k = 0; k < t_ref.size(); ++k) {
@@ -29,8 +31,10 @@ TEST(Liggghts, small_octet_lattice_drains_alike) {
   }
   const double inflow = slope(t, in_lattice, 0.05, 0.125), inflow_ref = slope(t_ref, in_ref, 0.05, 0.125);
   const double outflow = -slope(t, above, 0.37, 0.5), outflow_ref = -slope(t_ref, above_ref, 0.37, 0.5);
-  std::printf("inflow %.3f g/s (LIGGGHTS %.3f), outflow %.3f g/s (LIGGGHTS %.3f); largest difference in the lattice %.3f g, above the exit %.3f g\n",
-              1e3 * inflow, 1e3 * inflow_ref, 1e3 * outflow, 1e3 * outflow_ref, 1e3 * worst_in, 1e3 * worst_above);
+  std::printf(
+      "inflow %.3f g/s (LIGGGHTS %.3f), outflow %.3f g/s (LIGGGHTS %.3f); largest difference in the lattice %.3f g, "
+      "above the exit %.3f g\n",
+      1e3 * inflow, 1e3 * inflow_ref, 1e3 * outflow, 1e3 * outflow_ref, 1e3 * worst_in, 1e3 * worst_above);
   EXPECT_NEAR(inflow, inflow_ref, 0.4e-3);
   EXPECT_NEAR(outflow, outflow_ref, 0.6e-3);
   EXPECT_LT(worst_in, 0.15e-3);     // of 2.2 g at the peak
