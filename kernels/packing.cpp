@@ -1,6 +1,7 @@
 #include "kernels/packing.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "geometry/bounds.h"
@@ -26,6 +27,7 @@ class Packing {
     all_.insert(all_.end(), fixed.begin(), fixed.end());
     for (const PackedSphere& s : all_) max_radius_ = std::max(max_radius_, s.radius);
     next_.resize(moving_);
+    confined_.assign(moving_, 0);
   }
 
   PackingOutcome run(int max_iterations) {
@@ -34,8 +36,8 @@ class Packing {
     for (; outcome.iterations < max_iterations; ++outcome.iterations) {
       const Sweep s = sweep();
       outcome.worst_overlap = s.worst_overlap;
-      outcome.confined = s.worst_outside <= 0;
-      if (s.worst_overlap <= 0 && outcome.confined) break;
+      outcome.confined = s.worst_overlap <= 0 && all_confined();
+      if (outcome.confined) break;
       for (size_t k = 0; k < moving_; ++k) all_[k].position = next_[k];
       travel_ += s.longest_way;
       if (2 * travel_ > kListGap * max_radius_) find_neighbours();
@@ -46,7 +48,7 @@ class Packing {
 
  private:
   struct Sweep {
-    double worst_overlap = 0, worst_outside = 0, longest_way = 0;
+    double worst_overlap = 0, longest_way = 0;
   };
 
   void find_neighbours() {
@@ -88,6 +90,14 @@ class Packing {
     }
   }
 
+  bool all_confined() const {
+    std::atomic<bool> all{true};
+    parallel_for_each(moving_, [&](size_t k) {
+      if (norm(confine_(all_[k].position, all_[k].radius) - all_[k].position) > 1e-9 * all_[k].radius) all = false;
+    });
+    return all;
+  }
+
   Sweep sweep() {
     std::vector<Sweep> partial((moving_ + kPiece - 1) / kPiece);
     parallel_for(partial.size(), [&](size_t piece) {
@@ -96,7 +106,6 @@ class Packing {
     Sweep all;
     for (const Sweep& s : partial) {
       all.worst_overlap = std::max(all.worst_overlap, s.worst_overlap);
-      all.worst_outside = std::max(all.worst_outside, s.worst_outside);
       all.longest_way = std::max(all.longest_way, s.longest_way);
     }
     return all;
@@ -114,11 +123,15 @@ class Packing {
       const Vec3 n = r > 0 ? (1 / r) * d : Vec3{k < j ? 1.0 : -1.0, 0, 0};
       push += (j < moving_ ? kPush : 2 * kPush) * overlap * n;
     }
-    const Vec3 allowed_now = confine_(a.position, a.radius);
-    s.worst_outside = std::max(s.worst_outside, norm(allowed_now - a.position) - 1e-9 * a.radius);
+    if (confined_[k] && push.x == 0 && push.y == 0 && push.z == 0) {  // at rest: nothing to ask, and most soon are
+      next_[k] = a.position;
+      return;
+    }
     const double length = norm(push), most = 0.5 * a.radius;
     if (length > most) push = (most / length) * push;
-    next_[k] = confine_(a.position + push, a.radius);
+    const Vec3 wanted = a.position + push;
+    next_[k] = confine_(wanted, a.radius);
+    confined_[k] = norm(next_[k] - wanted) <= 1e-9 * a.radius;
     s.longest_way = std::max(s.longest_way, norm(next_[k] - a.position));
   }
 
@@ -127,6 +140,7 @@ class Packing {
   std::span<PackedSphere> out_;
   std::vector<PackedSphere> all_;
   std::vector<Vec3> next_;
+  std::vector<uint8_t> confined_;  // confine() left it where it is
   std::vector<std::vector<uint32_t>> neighbours_;
   CellGrid grid_;
   std::vector<uint64_t> packed_, scratch_;

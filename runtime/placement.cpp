@@ -98,7 +98,7 @@ Vec3 FreeSpace::inside_region(const Vec3& x, double radius) const {
 Vec3 FreeSpace::confine(const Vec3& x, double radius) const {
   thread_local std::vector<uint32_t> near;
   Vec3 p = inside_region(x, radius);
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < 40; ++round) {
     near.clear();
     index_->query(p, radius, near);
     bool moved = false;
@@ -128,10 +128,10 @@ Vec3 FreeSpace::random_point(Random& random) const {
   return {x, y, z};
 }
 
-double FreeSpace::volume() const {
+double FreeSpace::volume(double radius) const {
   Random random(1, 77);
   int inside = 0;
-  for (int k = 0; k < kVolumeSamples; ++k) inside += allows(random_point(random), 0);
+  for (int k = 0; k < kVolumeSamples; ++k) inside += allows(random_point(random), radius);
   return volume_of(bounds_) * inside / kVolumeSamples;
 }
 
@@ -156,12 +156,39 @@ std::vector<ParticleState> draw_share(const FillStage& stage, double volume, dou
   return drawn;
 }
 
-void place_at_random(std::vector<PackedSphere>& spheres, const FreeSpace& space, Random& random) {
-  for (PackedSphere& s : spheres) {
-    int tries = 0;
-    do s.position = space.random_point(random);
-    while (!space.allows(s.position, s.radius) && ++tries < kTries);
-    if (tries == kTries) s.position = space.confine(s.position, s.radius);
+// A random allowed point, or nearly: after many tries the nearest that is allowed.
+Vec3 random_allowed_point(const FreeSpace& space, double radius, Random& random) {
+  Vec3 x;
+  for (int tries = 0; tries < kTries; ++tries)
+    if (x = space.random_point(random); space.allows(x, radius)) return x;
+  return space.confine(x, radius);
+}
+
+// One sphere in each of about as many equal cells as there are spheres, anywhere in it. Points drawn without cells have
+// dense and loose patches, which take pushing apart thousands of sweeps to even out; these take a hundred.
+void place_stratified(std::vector<PackedSphere>& spheres, const FreeSpace& space, Random& random) {
+  if (spheres.empty()) return;
+  double radius = 0;
+  for (const PackedSphere& s : spheres) radius += s.radius / static_cast<double>(spheres.size());
+  const double cell = std::cbrt(space.volume(radius) / static_cast<double>(spheres.size()));
+  const Vec3 size = space.bounds().max - space.bounds().min;
+  const auto cells = [&](double length) { return std::max(1, static_cast<int>(std::lround(length / cell))); };
+  const int nx = cells(size.x), ny = cells(size.y), nz = cells(size.z);
+  std::vector<Vec3> points;
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        for (int tries = 0; tries < 8; ++tries) {
+          const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+          const Vec3 p = space.bounds().min + Vec3{(i + x) / nx * size.x, (j + y) / ny * size.y, (k + z) / nz * size.z};
+          if (!space.allows(p, radius)) continue;
+          points.push_back(p);
+          break;
+        }
+  for (size_t k = points.size(); k > 1; --k) std::swap(points[k - 1], points[random.bits() % k]);
+  for (size_t k = 0; k < spheres.size(); ++k) {
+    PackedSphere& s = spheres[k];
+    s.position = k < points.size() ? space.confine(points[k], s.radius) : random_allowed_point(space, s.radius, random);
   }
 }
 
@@ -181,8 +208,8 @@ std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Sol
                                                   stage.count - placed.size(), source);
     std::vector<PackedSphere> spheres(share.size());
     for (size_t k = 0; k < share.size(); ++k) spheres[k].radius = share[k].radius;
-    place_at_random(spheres, space, random);
-    const PackingOutcome outcome = push_apart(
+    place_stratified(spheres, space, random);
+    PackingOutcome outcome = push_apart(
         spheres, fixed, [&](const Vec3& x, double radius) { return space.confine(x, radius); }, kPackingIterations);
     if (outcome.worst_overlap > 0 || !outcome.confined)
       throw RunError(fmt::format(

@@ -23,8 +23,9 @@ class FreeSpace {
   Vec3 random_point(Random& random) const;  // uniform in the region's bounds
   const Bounds& bounds() const { return bounds_; }
 
-  // m3 of the region not inside the solid, by sampling (error about 0.5 %).
-  double volume() const;
+  // m3 where a sphere of this radius may have its centre; of radius 0: the region without the solid. By sampling (error
+  // about 0.5 %).
+  double volume(double radius = 0) const;
 
  private:
   Vec3 inside_region(const Vec3& x, double radius) const;

@@ -181,9 +181,12 @@ class Simulation {
 
   void run_stage(const std::string& name, const SettleStage& s) {
     begin(name, "settle");
+    // Particles that have just been placed are at rest before they fall: give them time to fall a diameter.
+    const double gravity = norm(case_.gravity);
+    const double shortest = std::max(s.min_time, gravity > 0 ? std::sqrt(4 * largest_radius(case_) / gravity) : 0);
     const auto at_rest = [&] {
       if (stage_time() >= s.max_time * (1 - 1e-9) && s.max_time > 0) return true;
-      if (s.kinetic_energy_per_particle <= 0 || stage_time() < s.min_time || engine_->count() == 0) return false;
+      if (s.kinetic_energy_per_particle <= 0 || stage_time() < shortest || engine_->count() == 0) return false;
       const double energy = engine_->sum([](const ParticleState& p) {
         return 0.5 * p.mass * (dot(p.velocity, p.velocity) + 0.4 * p.radius * p.radius * dot(p.spin, p.spin));
       });
