@@ -17,8 +17,8 @@ namespace {
 
 // Bytes a particle of the settled 400 um bed, lists and sort buffers included, at the peak of a rebuild: see
 // bench/README.md.
-constexpr double kBytesPerParticle = 560;
-constexpr double kFixedBytes = 60e6;
+constexpr double kBytesPerParticle = 420;
+constexpr double kFixedBytes = 40e6;
 
 std::string stage_text(const Case& c, const Stage& stage) {
   struct Text {
