@@ -1,5 +1,5 @@
-// A settled bed: the step, and the list rebuild. Counters: particle-steps/s, contacts per particle, bytes held a particle;
-// the label is the state hash, so that a fast wrong run shows.
+// A settled bed: the step, and the list rebuild. Counters: particle-steps/s, contacts per particle, bytes held a
+// particle; the label is the state hash, so that a fast wrong run shows.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -19,13 +19,16 @@ std::unique_ptr<Engine> engine_of(int tiles, const EngineOptions& options) {
 }
 
 void report(benchmark::State& state, const Engine& engine, uint64_t particle_steps) {
-  state.counters["particle_steps"] = benchmark::Counter(static_cast<double>(particle_steps), benchmark::Counter::kIsRate);
+  state.counters["particle_steps"] =
+      benchmark::Counter(static_cast<double>(particle_steps), benchmark::Counter::kIsRate);
   state.counters["particles"] = static_cast<double>(engine.count());
-  state.counters["coordination"] = 2.0 * static_cast<double>(engine.touching_pairs().size()) / static_cast<double>(engine.count());
+  state.counters["coordination"] =
+      2.0 * static_cast<double>(engine.touching_pairs().size()) / static_cast<double>(engine.count());
   state.counters["bytes_held"] = static_cast<double>(engine.bytes()) / static_cast<double>(engine.count());
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  state.counters["peak_rss_per_particle"] = static_cast<double>(usage.ru_maxrss) * 1024 / static_cast<double>(engine.count());
+  state.counters["peak_rss_per_particle"] =
+      static_cast<double>(usage.ru_maxrss) * 1024 / static_cast<double>(engine.count());
   state.SetLabel(fmt::format("{} {:016x}", engine.isa(), engine.state_hash()));
 }
 
@@ -45,7 +48,15 @@ void settled_bed_step(benchmark::State& state) {
 }
 
 const long kThreads = thread_count();
-BENCHMARK(settled_bed_step)->ArgNames({"tiles", "rebuild_every", "threads"})->Args({1, 50, kThreads})->Args({3, 50, kThreads})->Args({10, 50, kThreads})->Args({10, 50, 1})->Unit(benchmark::kMillisecond)->UseRealTime()->MinTime(3);
+BENCHMARK(settled_bed_step)
+    ->ArgNames({"tiles", "rebuild_every", "threads"})
+    ->Args({1, 50, kThreads})
+    ->Args({3, 50, kThreads})
+    ->Args({10, 50, kThreads})
+    ->Args({10, 50, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MinTime(3);
 
 }  // namespace
 }  // namespace scree::bench

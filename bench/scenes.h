@@ -1,5 +1,5 @@
-// The scenes that the benchmarks time. A settled bed is made once, small and periodic, and tiled to any size: every tile
-// is the same settled state, so a million particles need no hours of settling.
+// The scenes that the benchmarks time. A settled bed is made once, small and periodic, and tiled to any size: every
+// tile is the same settled state, so a million particles need no hours of settling.
 #pragma once
 
 #include "geometry/walls.h"
