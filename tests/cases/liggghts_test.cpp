@@ -35,7 +35,8 @@ TEST(Liggghts, small_octet_lattice_drains_alike) {
       "inflow %.3f g/s (LIGGGHTS %.3f), outflow %.3f g/s (LIGGGHTS %.3f); largest difference in the lattice %.3f g, "
       "above the exit %.3f g\n",
       1e3 * inflow, 1e3 * inflow_ref, 1e3 * outflow, 1e3 * outflow_ref, 1e3 * worst_in, 1e3 * worst_above);
-  EXPECT_NEAR(inflow, inflow_ref, 0.4e-3);
+  EXPECT_NEAR(inflow, inflow_ref, 0.3e-3);
+  // Agreement would be 0.3 g/s. We are 0.41 above LIGGGHTS and do not know why: this bound only guards against worse.
   EXPECT_NEAR(outflow, outflow_ref, 0.6e-3);
   EXPECT_LT(worst_in, 0.15e-3);     // of 2.2 g at the peak
   EXPECT_LT(worst_above, 0.15e-3);  // of 3 g
