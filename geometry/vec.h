@@ -53,6 +53,11 @@ template <class T>
 inline Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
   return {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
 }
+// s a + b
+template <class T>
+inline Vec<T> fma(const T& s, const Vec<T>& a, const Vec<T>& b) {
+  return {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)};
+}
 template <class T>
 inline Vec<T> select_vec(const auto& mask, const Vec<T>& yes, const Vec<T>& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};

@@ -66,20 +66,22 @@ std::array<uint32_t, 3> CellGrid::cell_of(const Vec3& x) const {
   return c;
 }
 
+bool CellGrid::neighbour(int axis, uint32_t c, int offset, uint32_t& other, double& shift) const {
+  int64_t at = int64_t{c} + offset;
+  shift = 0;
+  if (at < 0 || at >= n_[axis]) {
+    if (period_[axis] <= 0) return false;
+    shift = at < 0 ? -period_[axis] : period_[axis];
+    at += at < 0 ? n_[axis] : -int64_t{n_[axis]};
+  }
+  other = static_cast<uint32_t>(at);
+  return true;
+}
+
 bool CellGrid::neighbour(const std::array<uint32_t, 3>& c, const std::array<int, 3>& offset,
                          std::array<uint32_t, 3>& other, Vec3& shift) const {
-  double moved[3] = {0, 0, 0};
-  for (int a = 0; a < 3; ++a) {
-    int64_t at = int64_t{c[a]} + offset[a];
-    if (at < 0 || at >= n_[a]) {
-      if (period_[a] <= 0) return false;
-      moved[a] = at < 0 ? -period_[a] : period_[a];
-      at += at < 0 ? n_[a] : -int64_t{n_[a]};
-    }
-    other[a] = static_cast<uint32_t>(at);
-  }
-  shift = {moved[0], moved[1], moved[2]};
-  return true;
+  return neighbour(0, c[0], offset[0], other[0], shift.x) && neighbour(1, c[1], offset[1], other[1], shift.y) &&
+         neighbour(2, c[2], offset[2], other[2], shift.z);
 }
 
 }  // namespace scree

@@ -34,6 +34,9 @@ class CellGrid {
   bool neighbour(const std::array<uint32_t, 3>& c, const std::array<int, 3>& offset, std::array<uint32_t, 3>& other,
                  Vec3& shift) const;
 
+  // The same along one axis.
+  bool neighbour(int axis, uint32_t c, int offset, uint32_t& other, double& shift) const;
+
   size_t bytes() const { return ranges.capacity() * sizeof(Range); }
 
  private:

@@ -15,21 +15,22 @@ inline void promote_near_pairs(const ChunkTask<typename L::Real>& task) {
   using D = typename L::D;
   auto& near = task.contacts->near;
   const StepSettings& settings = *task.settings;
-  const uint32_t dummy = task.count;
+  const bool wraps = task.contacts->first_wrapping != task.contacts->kNoBlock;
   size_t kept = 0;
   for (size_t first = 0; first < near.size(); first += L::width) {
     uint32_t i[L::width], j[L::width];
     for (int k = 0; k < L::width; ++k) {
       const bool real = first + k < near.size();
-      i[k] = real ? near[first + k].i : dummy, j[k] = real ? near[first + k].j : dummy + 1;
+      i[k] = real ? near[first + k].i : task.count, j[k] = real ? near[first + k].j : task.count + 1;
     }
     const Bodies<L> a = gather_bodies<L>(task.old_particles, i), b = gather_bodies<L>(task.old_particles, j);
-    const Vec<D> d = minimum_image(a.position - b.position, settings.period);
+    Vec<D> d = a.position - b.position;
+    if (wraps) d = minimum_image(d, settings.period, settings.inverse_period);
     const D reach = L::widen(a.radius) + L::widen(b.radius) + D(settings.inner);
     const unsigned close = L::bits(L::narrow(fma(reach, reach, -dot(d, d))) >= F(0));
     for (int k = 0; k < L::width && first + k < near.size(); ++k) {
       if (close >> k & 1u)
-        task.contacts->append(i[k], j[k], dummy);
+        task.contacts->append(i[k], j[k]);
       else
         near[kept++] = {i[k], j[k]};
     }

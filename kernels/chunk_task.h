@@ -31,11 +31,11 @@ struct SkeletonTable {
 };
 
 struct StepSettings {
-  double dt;          // s
-  double kick;        // s, time that velocities advance: dt, or dt/2 in a run's first step
-  double history_dt;  // s, time that histories advance: dt, or 0 in a run's first step
-  double gravity[3];  // m/s2
-  double period[3];   // m; 0: not periodic
+  double dt;                            // s
+  double kick;                          // s, time that velocities advance: dt, or dt/2 in a run's first step
+  double history_dt;                    // s, time that histories advance: dt, or 0 in a run's first step
+  double gravity[3];                    // m/s2
+  double period[3], inverse_period[3];  // m, 1/m; 0: not periodic
   bool limit_attraction;
   bool check_near;     // promote near pairs before the forces
   double inner;        // m: a near pair closer than this becomes active

@@ -56,16 +56,16 @@ struct Reaction {
 template <class T>
 [[gnu::always_inline]] inline Vec<T> mindlin_friction(const Contact<T>& c, const T& k_t, const T& g_t, const T& limit,
                                                       const T& dt, Vec<T>& xi) {
-  const Vec<T> v_t = c.velocity - dot(c.velocity, c.normal) * c.normal;
+  const Vec<T> v_t = fma(-dot(c.velocity, c.normal), c.normal, c.velocity);
   const Vec<T> v_s = v_t + cross(c.normal, c.arm_spin);
-  xi += dt * v_s;
-  xi -= dot(xi, c.normal) * c.normal;
+  xi = fma(dt, v_s, xi);
+  xi = fma(-dot(xi, c.normal), c.normal, xi);
   const T spring = k_t * sqrt(dot(xi, xi));
   const auto slides = spring > limit;
   const T scale = limit / spring;  // used where it slides only, and there spring > 0
   xi = select_vec(slides, scale * xi, xi);
   const T damping = select(slides, T(0), g_t);
-  return -(k_t * xi + damping * v_s);
+  return fma(-damping, v_s, -k_t * xi);
 }
 
 // Rolling friction torque M (physics: constant directional torque, and elastic-plastic spring without dashpot).
@@ -77,11 +77,11 @@ template <RollingModel model, class T>
     const T spin = sqrt(dot(c.rolling_spin, c.rolling_spin));
     const T size = select(spin > T(0), p.rolling_friction * elastic_force * c.effective_radius / spin, T(0));
     const Vec<T> m = size * c.rolling_spin;
-    return m - dot(m, c.normal) * c.normal;
+    return fma(-dot(m, c.normal), c.normal, m);
   } else if constexpr (model == RollingModel::epsd2) {
     const T k_r = k_t * c.effective_radius * c.effective_radius;
-    const Vec<T> w_t = c.rolling_spin - dot(c.rolling_spin, c.normal) * c.normal;
-    Vec<T> m = torque_old + (k_r * dt) * w_t;
+    const Vec<T> w_t = fma(-dot(c.rolling_spin, c.normal), c.normal, c.rolling_spin);
+    Vec<T> m = fma(k_r * dt, w_t, torque_old);
     const T limit = p.rolling_friction * abs(force) * c.effective_radius;
     const T size = sqrt(dot(m, m));
     const T scale = limit / size;
@@ -102,14 +102,14 @@ template <RollingModel model, class T>
   const T k_n = T(4.0 / 3.0) * p.effective_youngs * s;
   const T k_t = T(8.0f) * p.effective_shear * s;
   const T elastic = k_n * c.overlap;
-  T normal_force = elastic - p.normal_damping * root_sm * dot(c.velocity, c.normal);
+  T normal_force = fma(-(p.normal_damping * root_sm), dot(c.velocity, c.normal), elastic);
   if (limit_attraction) normal_force = max(normal_force, T(0));
 
   const T friction_limit = p.sliding_friction * abs(normal_force);
   const Vec<T> tangential =
       mindlin_friction(c, k_t, p.tangential_damping * root_sm, friction_limit, dt, history.tangential_displacement);
   const Vec<T> rolling = rolling_friction<model>(c, p, elastic, normal_force, k_t, dt, history.rolling_torque);
-  return {normal_force * c.normal + tangential, cross(c.normal, tangential), rolling};
+  return {fma(normal_force, c.normal, tangential), cross(c.normal, tangential), rolling};
 }
 
 }  // namespace scree

@@ -17,10 +17,13 @@ namespace scree {
 
 inline constexpr int kBlock = 16;  // contacts in a block, whatever the lanes' width
 
-// Padding lanes name the two dummy particles after the last real one; they never touch anything.
+// i and row are counted from the chunk's first particle. `row` is where j's force goes: j's own row, or, for a j
+// outside the chunk, the trash row after the chunk's last. Padding lanes pair the chunk's first particle with a dummy
+// far away.
 template <class Real>
 struct alignas(64) PairBlock {
-  uint32_t i[kBlock], j[kBlock];
+  uint16_t i[kBlock], row[kBlock];
+  uint32_t j[kBlock];
   Real history[6][kBlock];  // tangential displacement x y z (m), rolling torque x y z (N m); zero when not touching
 };
 
@@ -31,7 +34,7 @@ struct NearPair {
 // Sixteen particles, each with up to `slots` solid primitives near it. One block's slots hold one kind of skeleton
 // each, in the order segments, quads, revolutions; padding names the kind's dummy primitive, far away.
 struct SolidBlock {
-  uint32_t i[kBlock];
+  uint16_t i[kBlock];   // from the chunk's first particle
   uint32_t first_slot;  // into ChunkContacts::slots
   uint8_t segments, quads, revolutions;
   uint32_t slots() const { return uint32_t{segments} + quads + revolutions; }
@@ -48,26 +51,36 @@ inline constexpr uint32_t kMaxSlots = 192;  // solid primitives near one particl
 
 template <class Real>
 struct ChunkContacts {
+  uint32_t begin = 0, end = 0, dummy = 0;  // the chunk; the particle that padding names
   std::vector<PairBlock<Real>> blocks;
   uint32_t pairs = 0;  // active pairs; the last block is padded
+  // Blocks from this one on may hold pairs that are nearest through a periodic border; those before it spare the loops
+  // the minimum image.
+  size_t first_wrapping = kNoBlock;
+  static constexpr size_t kNoBlock = ~size_t{0};
   std::vector<NearPair> near;
   std::vector<SolidBlock> solid_blocks;
   std::vector<SolidSlot<Real>> slots;
 
-  void clear() {
+  // Empties the lists; they are now of particles first..last - 1.
+  void clear(uint32_t first, uint32_t last, uint32_t dummy_particle) {
     blocks.clear(), near.clear(), solid_blocks.clear(), slots.clear();
-    pairs = 0;
+    pairs = 0, first_wrapping = kNoBlock;
+    begin = first, end = last, dummy = dummy_particle;
   }
+  uint32_t pair_i(uint32_t k) const { return begin + blocks[k / kBlock].i[k % kBlock]; }
+  uint32_t pair_j(uint32_t k) const { return blocks[k / kBlock].j[k % kBlock]; }
 
   // Appends an active pair; history all zero.
-  PairBlock<Real>& append(uint32_t i, uint32_t j, uint32_t dummy) {
+  PairBlock<Real>& append(uint32_t i, uint32_t j) {
     const uint32_t lane = pairs % kBlock;
     if (lane == 0) {
       PairBlock<Real>& b = blocks.emplace_back();
-      for (int k = 0; k < kBlock; ++k) b.i[k] = dummy, b.j[k] = dummy + 1;
+      for (int k = 0; k < kBlock; ++k) b.i[k] = 0, b.j[k] = dummy, b.row[k] = static_cast<uint16_t>(end - begin);
     }
     PairBlock<Real>& b = blocks.back();
-    b.i[lane] = i, b.j[lane] = j;
+    b.i[lane] = static_cast<uint16_t>(i - begin), b.j[lane] = j;
+    b.row[lane] = static_cast<uint16_t>(j >= begin && j < end ? j - begin : end - begin);
     ++pairs;
     return b;
   }

@@ -70,26 +70,25 @@ struct HistoryTable {
 
 // Live contacts of a chunk, for ChunkHistory::gather: pairs with a history that is not zero.
 template <class Real>
-void list_live_pairs(const ChunkContacts<Real>& contacts, uint32_t begin, const auto& visit) {
+void list_live_pairs(const ChunkContacts<Real>& contacts, const auto& visit) {
   for (uint32_t k = 0; k < contacts.pairs; ++k) {
     const PairBlock<Real>& b = contacts.blocks[k / kBlock];
     const Real* h = b.history[0] + k % kBlock;
     Real any = 0;
     for (int c = 0; c < 6; ++c) any += h[c * kBlock] != 0;
-    if (any != 0) visit(b.i[k % kBlock] - begin, b.j[k % kBlock], h);
+    if (any != 0) visit(b.i[k % kBlock], b.j[k % kBlock], h);
   }
 }
 
 // identity(slot kind 0..2, row) is the primitive's index in the case's list, the same for its periodic images.
 template <class Real>
-void list_live_solids(const ChunkContacts<Real>& contacts, uint32_t begin, const auto& identity, const auto& visit) {
+void list_live_solids(const ChunkContacts<Real>& contacts, const auto& identity, const auto& visit) {
   for (const SolidBlock& block : contacts.solid_blocks)
     for (uint32_t s = 0; s < block.slots(); ++s) {
       const SolidSlot<Real>& slot = contacts.slots[block.first_slot + s];
       const int kind = s < block.segments ? 0 : s < uint32_t{block.segments} + block.quads ? 1 : 2;
       for (int lane = 0; lane < kBlock; ++lane)
-        if (slot.live >> lane & 1u)
-          visit(block.i[lane] - begin, identity(kind, slot.primitive[lane]), slot.history[0] + lane);
+        if (slot.live >> lane & 1u) visit(block.i[lane], identity(kind, slot.primitive[lane]), slot.history[0] + lane);
     }
 }
 

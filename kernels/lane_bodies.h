@@ -15,9 +15,8 @@ struct Bodies {
   typename L::F radius, inverse_mass;
 };
 
-template <class L>
-[[gnu::always_inline]] inline Bodies<L> gather_bodies(const Particle<typename L::Real>* particles,
-                                                      const uint32_t* index) {
+template <class L, class Index>
+[[gnu::always_inline]] inline Bodies<L> gather_bodies(const Particle<typename L::Real>* particles, const Index* index) {
   using Real = typename L::Real;
   const double* positions[L::width];
   const Real* motions[L::width];
@@ -82,17 +81,13 @@ template <class F>
   return {{F(0), F(0), F(0)}, {F(0), F(0), F(0)}};
 }
 
-// Adds force and torque to the rows of particles first..; indices outside the chunk go to the trash row.
+// Adds force and torque to the rows named.
 template <class L>
-[[gnu::always_inline]] inline void add_to_rows(const ChunkTask<typename L::Real>& task, const uint32_t* index,
+[[gnu::always_inline]] inline void add_to_rows(const ChunkTask<typename L::Real>& task, const uint16_t* row,
                                                const Vec<typename L::F>& force, const Vec<typename L::F>& torque) {
   using F = typename L::F;
   typename L::Real* rows[L::width];
-  const uint32_t size = task.end - task.begin;
-  for (int k = 0; k < L::width; ++k) {
-    const uint32_t local = index[k] - task.begin;  // wraps to a large number below the chunk
-    rows[k] = task.rows + 8 * static_cast<size_t>(local < size ? local : size);
-  }
+  for (int k = 0; k < L::width; ++k) rows[k] = task.rows + 8 * size_t{row[k]};
   const F columns[8] = {force.x, force.y, force.z, torque.x, torque.y, torque.z, F(0), F(0)};
   L::add_rows(rows, columns);
 }

@@ -28,46 +28,92 @@ struct SearchTask {
 // that no pair that the double test would list is missed.
 inline constexpr float kSearchMargin = 1e-5f;
 
-// Particles of a cell's neighbourhood as float coordinates relative to `centre`.
-struct Candidates {
+// Particles of up to 4 x 4 x 4 cells (a run in Morton order: a family) share one gathering of candidates.
+inline constexpr uint32_t kFamilyBits = 2, kMostAround = (1u << kFamilyBits) + 2;
+
+// Particles of the cells around a family as float coordinates relative to `centre`, row after row of cells along x: the
+// candidates of one of its particles are nine short runs.
+class Candidates {
+ public:
   std::vector<float> x, y, z, radius;
   std::vector<uint32_t> index;
-  size_t size = 0;
-
-  void reserve(size_t count) {
-    if (x.size() >= count) return;
-    count += count / 2 + 64;
-    x.resize(count), y.resize(count), z.resize(count), radius.resize(count), index.resize(count);
-  }
+  std::vector<uint8_t> wraps;  // seen through a periodic border
 
   // Cells `low`..`high` and those around them. Particles begin..first are left out: their pairs with ours are listed
   // already (a pair inside a chunk is listed at its lower index).
   template <class Real>
   void gather(const SearchTask<Real>& task, const std::array<uint32_t, 3>& low, const std::array<uint32_t, 3>& high,
               uint32_t first, const Vec3& centre) {
-    size = 0;
-    const auto span = [&](int axis) { return static_cast<int>(high[axis] - low[axis]) + 1; };
-    for (int dz = -1; dz <= span(2); ++dz)
-      for (int dy = -1; dy <= span(1); ++dy)
-        for (int dx = -1; dx <= span(0); ++dx) {
-          std::array<uint32_t, 3> other;
-          Vec3 shift;
-          if (!task.grid->neighbour(low, {dx, dy, dz}, other, shift)) continue;
-          CellGrid::Range range = task.grid->ranges[task.grid->linear(other)];
-          if (range.begin >= task.begin && range.begin < first) range.begin = std::min(range.end, first);
-          reserve(size + (range.end - range.begin) + 16);
-          for (uint32_t k = range.begin; k < range.end; ++k, ++size) {
-            const Particle<Real>& p = task.particles[k];
-            x[size] = static_cast<float>(p.x + shift.x - centre.x);
-            y[size] = static_cast<float>(p.y + shift.y - centre.y);
-            z[size] = static_cast<float>(p.z + shift.z - centre.z);
-            radius[size] = static_cast<float>(p.radius);
-            index[size] = k;
-          }
+    for (int a = 0; a < 3; ++a)
+      for (uint32_t k = 0; k < high[a] - low[a] + 3; ++k)
+        axis_[a][k].there =
+            task.grid->neighbour(a, low[a], static_cast<int>(k) - 1, axis_[a][k].cell, axis_[a][k].shift);
+    size_ = 0, low_ = low;
+    for (uint32_t cz = 0; cz < high[2] - low[2] + 3; ++cz)
+      for (uint32_t cy = 0; cy < high[1] - low[1] + 3; ++cy) {
+        uint32_t* row = rows_[cz][cy];
+        for (uint32_t cx = 0; cx < high[0] - low[0] + 3; ++cx) {
+          *row++ = size_;
+          const AxisCell &along_x = axis_[0][cx], &along_y = axis_[1][cy], &along_z = axis_[2][cz];
+          if (along_x.there && along_y.there && along_z.there)
+            gather_cell(task, task.grid->linear({along_x.cell, along_y.cell, along_z.cell}),
+                        {along_x.shift, along_y.shift, along_z.shift}, first, centre);
         }
-    for (size_t k = size; k < size + 16; ++k)
-      x[k] = y[k] = z[k] = 1e6f, radius[k] = 0, index[k] = 0;  // padding, far away
+        *row = size_;
+      }
+    reserve(size_ + kBlock);  // the last run's vector reads beyond it
   }
+
+  struct Run {
+    uint32_t begin, end;
+  };
+  // The cells around `cell` in the row (dy, dz) next to it, -1..1.
+  Run run(const std::array<uint32_t, 3>& cell, int dy, int dz) const {
+    const uint32_t* row = rows_[cell[2] - low_[2] + 1 + dz][cell[1] - low_[1] + 1 + dy] + (cell[0] - low_[0]);
+    return {row[0], row[3]};
+  }
+
+ private:
+  void reserve(size_t count) {
+    if (x.size() >= count) return;
+    count += count / 2 + 64;
+    x.resize(count), y.resize(count), z.resize(count), radius.resize(count), index.resize(count);
+    wraps.resize(count);
+  }
+
+  template <class Real>
+  void gather_cell(const SearchTask<Real>& task, size_t cell, const Vec3& shift, uint32_t first, const Vec3& centre) {
+    CellGrid::Range range = task.grid->ranges[cell];
+    if (range.begin >= task.begin && range.begin < first) range.begin = std::min(range.end, first);
+    reserve(size_ + (range.end - range.begin));
+    const Vec3 from = centre - shift;
+    const bool through_border = shift.x != 0 || shift.y != 0 || shift.z != 0;
+    for (uint32_t k = range.begin; k < range.end; ++k, ++size_) {
+      const Particle<Real>& p = task.particles[k];
+      x[size_] = static_cast<float>(p.x - from.x);
+      y[size_] = static_cast<float>(p.y - from.y);
+      z[size_] = static_cast<float>(p.z - from.z);
+      radius[size_] = static_cast<float>(p.radius);
+      index[size_] = k;
+      wraps[size_] = through_border;
+    }
+  }
+
+  struct AxisCell {
+    uint32_t cell;
+    double shift;
+    bool there;
+  };
+  AxisCell axis_[3][kMostAround];
+  uint32_t rows_[kMostAround][kMostAround][kMostAround + 1];  // where each cell begins, by z, y, x; and the row's end
+  std::array<uint32_t, 3> low_{};
+  uint32_t size_ = 0;
+};
+
+// Pairs through a periodic border wait until a chunk's other pairs are listed: they come last.
+struct WrappingPair {
+  uint32_t i, j;
+  bool active;
 };
 
 template <class L>
@@ -76,14 +122,15 @@ inline void emit_pair(const SearchTask<typename L::Real>& task, uint32_t i, uint
     task.contacts->near.push_back({i, j});
     return;
   }
-  auto& block = task.contacts->append(i, j, task.count);
+  auto& block = task.contacts->append(i, j);
   task.history->copy_pair(task.old_index[i], task.old_index[j], block.history[0] + (task.contacts->pairs - 1) % kBlock);
 }
 
 // N lanes of floats, whatever the storage type.
 template <class L>
 inline void search_particle(const SearchTask<typename L::Real>& task, const Candidates& c, uint32_t i,
-                            const Vec3& centre) {
+                            const std::array<uint32_t, 3>& cell, const Vec3& centre,
+                            std::vector<WrappingPair>& wrapping) {
   using S = std::conditional_t<L::width == 1, ScalarLanes<float>, L>;
   using F = typename S::F;
   const auto& p = task.particles[i];
@@ -92,44 +139,62 @@ inline void search_particle(const SearchTask<typename L::Real>& task, const Cand
   const float radius = static_cast<float>(p.radius);
   const F outer(static_cast<float>(radius + task.skin)), inner(static_cast<float>(radius + task.inner));
   const F margin(1 + kSearchMargin);
-  for (size_t k = 0; k < c.size; k += S::width) {
-    const Vec<F> d{x - S::load(&c.x[k]), y - S::load(&c.y[k]), z - S::load(&c.z[k])};
-    const F distance2 = dot(d, d), other = S::load(&c.radius[k]);
-    const F outer_reach = (outer + other) * margin, inner_reach = (inner + other) * margin;
-    unsigned listed = S::bits(distance2 <= outer_reach * outer_reach);
-    if (listed == 0) continue;
-    const unsigned active = S::bits(distance2 <= inner_reach * inner_reach);
-    for (; listed != 0; listed &= listed - 1) {
-      const int lane = __builtin_ctz(listed);
-      const uint32_t j = c.index[k + static_cast<size_t>(lane)];
-      if (j > i || j < task.begin) emit_pair<L>(task, i, j, active >> lane & 1u);
+  for (int row = 0; row < 9; ++row) {
+    const auto [begin, end] = c.run(cell, row % 3 - 1, row / 3 - 1);
+    for (uint32_t k = begin; k < end; k += S::width) {
+      const Vec<F> d{x - S::load(&c.x[k]), y - S::load(&c.y[k]), z - S::load(&c.z[k])};
+      const F distance2 = dot(d, d), other = S::load(&c.radius[k]);
+      const F outer_reach = (outer + other) * margin, inner_reach = (inner + other) * margin;
+      unsigned listed = S::bits(distance2 <= outer_reach * outer_reach);
+      if (end - k < S::width) listed &= (1u << (end - k)) - 1;
+      if (listed == 0) continue;
+      const unsigned active = S::bits(distance2 <= inner_reach * inner_reach);
+      for (; listed != 0; listed &= listed - 1) {
+        const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(listed)), j = c.index[k + lane];
+        if (j <= i && j >= task.begin) continue;
+        if (c.wraps[k + lane])
+          wrapping.push_back({i, j, (active >> lane & 1u) != 0});
+        else
+          emit_pair<L>(task, i, j, active >> lane & 1u);
+      }
     }
   }
 }
 
-// Particles of up to 2 x 2 x 2 cells (a run in Morton order) share one gathering of candidates: a cell holds about one
-// particle, its neighbourhood fifty.
 template <class L>
 void search_chunk(const SearchTask<typename L::Real>& task) {
+  using Cell = std::array<uint32_t, 3>;
   thread_local Candidates candidates;
+  thread_local std::vector<WrappingPair> wrapping;
+  wrapping.clear();
   const auto position = [&](uint32_t k) { return Vec3{task.particles[k].x, task.particles[k].y, task.particles[k].z}; };
-  const auto cell_of = [&](uint32_t k) { return task.grid->cell_of(position(k)); };
+  const auto family_of = [](const Cell& c) {
+    return Cell{c[0] >> kFamilyBits, c[1] >> kFamilyBits, c[2] >> kFamilyBits};
+  };
   for (uint32_t first = task.begin; first < task.end;) {
-    std::array<uint32_t, 3> low = cell_of(first), high = low;
-    const std::array<uint32_t, 3> family{low[0] / 2, low[1] / 2, low[2] / 2};
-    uint32_t last = first;
-    for (auto cell = low; last < task.end;) {
+    struct {
+      Cell cell;
+      uint32_t begin;
+    } members[1u << 3 * kFamilyBits];
+    uint32_t count = 0, last = first;
+    Cell low = task.grid->cell_of(position(first)), high = low;
+    const Cell family = family_of(low);
+    for (Cell cell = low; family_of(cell) == family; cell = task.grid->cell_of(position(last))) {
       for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], cell[a]), high[a] = std::max(high[a], cell[a]);
+      members[count++] = {cell, last};
       last = std::min(task.end, task.grid->ranges[task.grid->linear(cell)].end);
       if (last == task.end) break;
-      cell = cell_of(last);
-      if (std::array<uint32_t, 3>{cell[0] / 2, cell[1] / 2, cell[2] / 2} != family) break;
     }
     const Vec3 centre = position(first);
     candidates.gather(task, low, high, first, centre);
-    for (uint32_t i = first; i < last; ++i) search_particle<L>(task, candidates, i, centre);
+    for (uint32_t m = 0; m < count; ++m)
+      for (uint32_t i = members[m].begin; i < (m + 1 < count ? members[m + 1].begin : last); ++i)
+        search_particle<L>(task, candidates, i, members[m].cell, centre, wrapping);
     first = last;
   }
+  if (wrapping.empty()) return;
+  task.contacts->first_wrapping = task.contacts->pairs / kBlock;
+  for (const WrappingPair& p : wrapping) emit_pair<L>(task, p.i, p.j, p.active);
 }
 
 }  // namespace scree

@@ -3,17 +3,18 @@
 // the sum of the radii.
 #pragma once
 
+#include <algorithm>
+
 #include "kernels/lane_bodies.h"
 #include "kernels/periodic.h"
 
 namespace scree {
 
 // What the instantiation knows beforehand.
-template <RollingModel rolling_model, bool is_uniform, bool is_periodic>
+template <RollingModel rolling_model, bool is_uniform>
 struct PassTraits {
   static constexpr RollingModel rolling = rolling_model;
   static constexpr bool uniform = is_uniform;
-  static constexpr bool periodic = is_periodic;
 };
 
 template <class L>
@@ -23,13 +24,13 @@ struct PairGeometry {
   typename L::F overlap_share;
 };
 
-template <class L, bool periodic>
+template <class L, bool wraps>
 [[gnu::always_inline]] inline PairGeometry<L> pair_geometry(const Bodies<L>& i, const Bodies<L>& j,
                                                             const StepSettings& settings) {
   using F = typename L::F;
   using D = typename L::D;
   Vec<D> d = i.position - j.position;
-  if constexpr (periodic) d = minimum_image(d, settings.period);
+  if constexpr (wraps) d = minimum_image(d, settings.period, settings.inverse_period);
   const D distance2 = dot(d, d);
   const D radius_sum = L::widen(i.radius) + L::widen(j.radius);
   const F distance = sqrt(L::narrow(distance2));
@@ -52,12 +53,12 @@ template <class L, bool periodic>
 
 template <class L, class Traits>
 [[gnu::always_inline]] inline PairConstants<typename L::F> pair_constants_of(const ChunkTask<typename L::Real>& task,
-                                                                             const uint32_t* i, const uint32_t* j) {
+                                                                             const uint16_t* i, const uint32_t* j) {
   using Real = typename L::Real;
   if constexpr (Traits::uniform) return broadcast_constants<L>(task.materials->row(0, 0));
   const Real* rows[L::width];
   for (int k = 0; k < L::width; ++k)
-    rows[k] = task.materials->row(task.old_particles[i[k]].kind(), task.old_particles[j[k]].kind());
+    rows[k] = task.materials->row(task.old_particles[task.begin + i[k]].kind(), task.old_particles[j[k]].kind());
   return gather_constants<L>(rows);
 }
 
@@ -66,53 +67,74 @@ struct ForceTorque {
   Vec<F> force, torque;
 };
 
-// `width` contacts from `lane` on. Adds to the rows of i; returns what is for j.
+// `width` contacts of a block, from `lane` on.
+template <class L, bool wraps>
+[[gnu::always_inline]] inline PairGeometry<L> pair_lanes(const ChunkTask<typename L::Real>& task,
+                                                         const PairBlock<typename L::Real>& block, int lane) {
+  return pair_geometry<L, wraps>(gather_bodies<L>(task.old_particles + task.begin, block.i + lane),
+                                 gather_bodies<L>(task.old_particles, block.j + lane), *task.settings);
+}
+
+template <class F>
+struct PairReaction {
+  ForceTorque<F> on_i, on_j;
+};
+
 template <class L, class Traits>
-[[gnu::always_inline]] inline ForceTorque<typename L::F> pair_lanes(const ChunkTask<typename L::Real>& task,
-                                                                    PairBlock<typename L::Real>& block, int lane,
-                                                                    typename L::F& max_share) {
+[[gnu::always_inline]] inline PairReaction<typename L::F> react(const ChunkTask<typename L::Real>& task,
+                                                                PairBlock<typename L::Real>& block, int lane,
+                                                                PairGeometry<L>& g, typename L::F& max_share) {
   using F = typename L::F;
-  const uint32_t *index_i = block.i + lane, *index_j = block.j + lane;
-  const Bodies<L> i = gather_bodies<L>(task.old_particles, index_i), j = gather_bodies<L>(task.old_particles, index_j);
-  PairGeometry<L> g = pair_geometry<L, Traits::periodic>(i, j, *task.settings);
   const auto touching = g.contact.overlap > F(0);
   typename L::Real* stored = block.history[0] + lane;
   const Vec<F> zero{F(0), F(0), F(0)};
   if (!any(touching)) {
     store_history<L>(no_history<F>(), stored);
-    return {zero, zero};
+    return {{zero, zero}, {zero, zero}};
   }
   max_share = max(max_share, select(touching, g.overlap_share, F(0)));
   g.contact.overlap = max(g.contact.overlap, F(0));
   ContactHistory<F> history = load_history<L>(stored);
-  const PairConstants<F> constants = pair_constants_of<L, Traits>(task, index_i, index_j);
+  const PairConstants<F> constants = pair_constants_of<L, Traits>(task, block.i + lane, block.j + lane);
   const Reaction<F> r = hertz_mindlin<Traits::rolling>(g.contact, constants, F(task.settings->history_dt),
                                                        task.settings->limit_attraction, history);
   store_history<L>(select_history(touching, history, no_history<F>()), stored);
   const Vec<F> force = select_vec(touching, r.force, zero);
   const Vec<F> lever = select_vec(touching, r.lever_torque, zero), rolling = select_vec(touching, r.rolling, zero);
-  add_to_rows<L>(task, index_i, force, -(g.arm_i * lever) - rolling);
-  return {-force, rolling - g.arm_j * lever};
+  return {{force, fma(-g.arm_i, lever, -rolling)}, {-force, fma(-g.arm_j, lever, rolling)}};
 }
 
-// A block's sixteen i rows first, then its sixteen j rows: the order of additions, and so the bits, are those of every
-// lane width.
-template <class L, class Traits>
-inline double pair_pass(const ChunkTask<typename L::Real>& task) {
+// Blocks first..last - 1, a block in three stages: a contact is a chain of divisions and square roots, and vectors side
+// by side in one stage fill each other's waits. The sixteen i rows first, then the sixteen j rows: the order of
+// additions, and so the bits, are those of every lane width.
+template <class L, class Traits, bool wraps>
+inline double pair_pass(const ChunkTask<typename L::Real>& task, size_t first, size_t last) {
   using F = typename L::F;
+  constexpr int vectors = kBlock / L::width;
   F max_share(0);
   auto& blocks = task.contacts->blocks;
   const size_t count = blocks.size();
-  for (size_t b = 0; b < count; ++b) {
+  for (size_t b = first; b < last; ++b) {
     if (b + 2 < count)  // the particles that the block after next will read
       for (int k = 0; k < kBlock; ++k) __builtin_prefetch(&task.old_particles[blocks[b + 2].j[k]]);
-    ForceTorque<F> on_j[kBlock / L::width];
-    for (int k = 0; k < kBlock / L::width; ++k)
-      on_j[k] = pair_lanes<L, Traits>(task, blocks[b], k * L::width, max_share);
-    for (int k = 0; k < kBlock / L::width; ++k)
-      add_to_rows<L>(task, blocks[b].j + k * L::width, on_j[k].force, on_j[k].torque);
+    PairGeometry<L> geometry[vectors];
+    for (int k = 0; k < vectors; ++k) geometry[k] = pair_lanes<L, wraps>(task, blocks[b], k * L::width);
+    PairReaction<F> reaction[vectors];
+    for (int k = 0; k < vectors; ++k)
+      reaction[k] = react<L, Traits>(task, blocks[b], k * L::width, geometry[k], max_share);
+    for (int k = 0; k < vectors; ++k)
+      add_to_rows<L>(task, blocks[b].i + k * L::width, reaction[k].on_i.force, reaction[k].on_i.torque);
+    for (int k = 0; k < vectors; ++k)
+      add_to_rows<L>(task, blocks[b].row + k * L::width, reaction[k].on_j.force, reaction[k].on_j.torque);
   }
   return L::max_lane(max_share);
+}
+
+template <class L, class Traits>
+inline double pair_pass(const ChunkTask<typename L::Real>& task) {
+  const size_t count = task.contacts->blocks.size(), wrapping = std::min(count, task.contacts->first_wrapping);
+  const double direct = pair_pass<L, Traits, false>(task, 0, wrapping);
+  return wrapping < count ? std::max(direct, pair_pass<L, Traits, true>(task, wrapping, count)) : direct;
 }
 
 }  // namespace scree

@@ -6,13 +6,12 @@
 
 namespace scree {
 
-// d + the multiple of each period (m; 0: not periodic) that makes it shortest. Exactly odd in d.
+// d + the multiple of each period (m; 0, and its inverse 0: not periodic) that makes it shortest. Exactly odd in d.
 template <class D>
-inline Vec<D> minimum_image(const Vec<D>& d, const double* period) {
-  const auto wrap = [](const D& a, double length) {
-    return length > 0 ? fma(round(a * D(1 / length)), D(-length), a) : a;
-  };
-  return {wrap(d.x, period[0]), wrap(d.y, period[1]), wrap(d.z, period[2])};
+[[gnu::always_inline]] inline Vec<D> minimum_image(const Vec<D>& d, const double* period,
+                                                   const double* inverse_period) {
+  const auto wrap = [&](const D& a, int axis) { return fma(round(a * D(inverse_period[axis])), D(-period[axis]), a); };
+  return {wrap(d.x, 0), wrap(d.y, 1), wrap(d.z, 2)};
 }
 
 }  // namespace scree

@@ -55,6 +55,52 @@ struct ScalarLanes {
   }
 };
 
+// ---- a number of two halves
+// --------------------------------------------------------
+template <class V>
+struct Twice;
+template <class V>
+Twice<V> make_twice(const V& lo, const V& hi) {
+  return {lo, hi};
+}
+
+template <class V>
+struct Twice {
+  V lo, hi;
+  Twice() = default;
+  Twice(const V& a, const V& b) : lo(a), hi(b) {}
+  template <class N>
+  requires std::is_arithmetic_v<N>
+  explicit Twice(N a) : lo(a), hi(a) {}
+
+  friend Twice operator+(const Twice& a, const Twice& b) { return {a.lo + b.lo, a.hi + b.hi}; }
+  friend Twice operator-(const Twice& a, const Twice& b) { return {a.lo - b.lo, a.hi - b.hi}; }
+  friend Twice operator*(const Twice& a, const Twice& b) { return {a.lo * b.lo, a.hi * b.hi}; }
+  friend Twice operator/(const Twice& a, const Twice& b) { return {a.lo / b.lo, a.hi / b.hi}; }
+  friend Twice operator-(const Twice& a) { return {-a.lo, -a.hi}; }
+  friend auto operator<(const Twice& a, const Twice& b) { return make_twice(a.lo < b.lo, a.hi < b.hi); }
+  friend auto operator>(const Twice& a, const Twice& b) { return make_twice(a.lo > b.lo, a.hi > b.hi); }
+  friend auto operator<=(const Twice& a, const Twice& b) { return make_twice(a.lo <= b.lo, a.hi <= b.hi); }
+  friend auto operator>=(const Twice& a, const Twice& b) { return make_twice(a.lo >= b.lo, a.hi >= b.hi); }
+  friend auto operator==(const Twice& a, const Twice& b) { return make_twice(a.lo == b.lo, a.hi == b.hi); }
+  friend Twice operator&(const Twice& a, const Twice& b) { return {a.lo & b.lo, a.hi & b.hi}; }
+  friend Twice operator|(const Twice& a, const Twice& b) { return {a.lo | b.lo, a.hi | b.hi}; }
+  friend Twice operator!(const Twice& a) { return {!a.lo, !a.hi}; }
+  friend bool any(const Twice& a) { return any(a.lo | a.hi); }
+  template <class W>
+  friend Twice<W> select(const Twice& mask, const Twice<W>& yes, const Twice<W>& no) {
+    return {select(mask.lo, yes.lo, no.lo), select(mask.hi, yes.hi, no.hi)};
+  }
+  friend Twice fma(const Twice& a, const Twice& b, const Twice& c) {
+    return {fma(a.lo, b.lo, c.lo), fma(a.hi, b.hi, c.hi)};
+  }
+  friend Twice sqrt(const Twice& a) { return {sqrt(a.lo), sqrt(a.hi)}; }
+  friend Twice abs(const Twice& a) { return {abs(a.lo), abs(a.hi)}; }
+  friend Twice round(const Twice& a) { return {round(a.lo), round(a.hi)}; }
+  friend Twice min(const Twice& a, const Twice& b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+  friend Twice max(const Twice& a, const Twice& b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+};
+
 // ---- the widest lanes that this translation unit's flags allow
 // --------------------------------------------------------
 namespace HWY_NAMESPACE {
@@ -73,8 +119,8 @@ static_assert(kWidth >= 4, "lanes below 128 bits: use ScalarLanes");
 struct FMask {
   hn::Mask<FloatTag> m;
 };
-struct DMask {
-  hn::Mask<DoubleTag> lo, hi;
+struct HalfDMask {
+  hn::Mask<DoubleTag> m;
 };
 
 struct F {
@@ -85,14 +131,17 @@ struct F {
   requires std::is_arithmetic_v<N>
   explicit F(N a) : v(hn::Set(FloatTag(), static_cast<float>(a))) {}
 };
-struct D {
-  DoubleVec lo, hi;
-  D() = default;
-  D(DoubleVec a, DoubleVec b) : lo(a), hi(b) {}
+// Half as many doubles as floats fit a vector: D is two of these.
+struct HalfD {
+  DoubleVec v;
+  HalfD() = default;
+  HalfD(DoubleVec a) : v(a) {}
   template <class N>
   requires std::is_arithmetic_v<N>
-  explicit D(N a) : lo(hn::Set(DoubleTag(), static_cast<double>(a))), hi(lo) {}
+  explicit HalfD(N a) : v(hn::Set(DoubleTag(), static_cast<double>(a))) {}
 };
+using D = Twice<HalfD>;
+using DMask = Twice<HalfDMask>;
 
 inline F operator+(F a, F b) { return hn::Add(a.v, b.v); }
 inline F operator-(F a, F b) { return hn::Sub(a.v, b.v); }
@@ -115,28 +164,26 @@ inline F abs(F a) { return hn::Abs(a.v); }
 inline F min(F a, F b) { return hn::Min(a.v, b.v); }
 inline F max(F a, F b) { return hn::Max(a.v, b.v); }
 
-inline D operator+(D a, D b) { return {hn::Add(a.lo, b.lo), hn::Add(a.hi, b.hi)}; }
-inline D operator-(D a, D b) { return {hn::Sub(a.lo, b.lo), hn::Sub(a.hi, b.hi)}; }
-inline D operator*(D a, D b) { return {hn::Mul(a.lo, b.lo), hn::Mul(a.hi, b.hi)}; }
-inline D operator/(D a, D b) { return {hn::Div(a.lo, b.lo), hn::Div(a.hi, b.hi)}; }
-inline D operator-(D a) { return {hn::Neg(a.lo), hn::Neg(a.hi)}; }
-inline DMask operator<(D a, D b) { return {hn::Lt(a.lo, b.lo), hn::Lt(a.hi, b.hi)}; }
-inline DMask operator>(D a, D b) { return {hn::Gt(a.lo, b.lo), hn::Gt(a.hi, b.hi)}; }
-inline DMask operator<=(D a, D b) { return {hn::Le(a.lo, b.lo), hn::Le(a.hi, b.hi)}; }
-inline DMask operator>=(D a, D b) { return {hn::Ge(a.lo, b.lo), hn::Ge(a.hi, b.hi)}; }
-inline DMask operator==(D a, D b) { return {hn::Eq(a.lo, b.lo), hn::Eq(a.hi, b.hi)}; }
-inline DMask operator&(DMask a, DMask b) { return {hn::And(a.lo, b.lo), hn::And(a.hi, b.hi)}; }
-inline DMask operator|(DMask a, DMask b) { return {hn::Or(a.lo, b.lo), hn::Or(a.hi, b.hi)}; }
-inline DMask operator!(DMask a) { return {hn::Not(a.lo), hn::Not(a.hi)}; }
-inline D select(DMask m, D yes, D no) {
-  return {hn::IfThenElse(m.lo, yes.lo, no.lo), hn::IfThenElse(m.hi, yes.hi, no.hi)};
-}
-inline D fma(D a, D b, D c) { return {hn::MulAdd(a.lo, b.lo, c.lo), hn::MulAdd(a.hi, b.hi, c.hi)}; }
-inline D sqrt(D a) { return {hn::Sqrt(a.lo), hn::Sqrt(a.hi)}; }
-inline D abs(D a) { return {hn::Abs(a.lo), hn::Abs(a.hi)}; }
-inline D min(D a, D b) { return {hn::Min(a.lo, b.lo), hn::Min(a.hi, b.hi)}; }
-inline D max(D a, D b) { return {hn::Max(a.lo, b.lo), hn::Max(a.hi, b.hi)}; }
-inline D round(D a) { return {hn::Round(a.lo), hn::Round(a.hi)}; }
+inline HalfD operator+(HalfD a, HalfD b) { return hn::Add(a.v, b.v); }
+inline HalfD operator-(HalfD a, HalfD b) { return hn::Sub(a.v, b.v); }
+inline HalfD operator*(HalfD a, HalfD b) { return hn::Mul(a.v, b.v); }
+inline HalfD operator/(HalfD a, HalfD b) { return hn::Div(a.v, b.v); }
+inline HalfD operator-(HalfD a) { return hn::Neg(a.v); }
+inline HalfDMask operator<(HalfD a, HalfD b) { return {hn::Lt(a.v, b.v)}; }
+inline HalfDMask operator>(HalfD a, HalfD b) { return {hn::Gt(a.v, b.v)}; }
+inline HalfDMask operator<=(HalfD a, HalfD b) { return {hn::Le(a.v, b.v)}; }
+inline HalfDMask operator>=(HalfD a, HalfD b) { return {hn::Ge(a.v, b.v)}; }
+inline HalfDMask operator==(HalfD a, HalfD b) { return {hn::Eq(a.v, b.v)}; }
+inline HalfDMask operator&(HalfDMask a, HalfDMask b) { return {hn::And(a.m, b.m)}; }
+inline HalfDMask operator|(HalfDMask a, HalfDMask b) { return {hn::Or(a.m, b.m)}; }
+inline HalfDMask operator!(HalfDMask a) { return {hn::Not(a.m)}; }
+inline HalfD select(HalfDMask m, HalfD yes, HalfD no) { return hn::IfThenElse(m.m, yes.v, no.v); }
+inline HalfD fma(HalfD a, HalfD b, HalfD c) { return hn::MulAdd(a.v, b.v, c.v); }
+inline HalfD sqrt(HalfD a) { return hn::Sqrt(a.v); }
+inline HalfD abs(HalfD a) { return hn::Abs(a.v); }
+inline HalfD min(HalfD a, HalfD b) { return hn::Min(a.v, b.v); }
+inline HalfD max(HalfD a, HalfD b) { return hn::Max(a.v, b.v); }
+inline HalfD round(HalfD a) { return hn::Round(a.v); }
 
 struct NativeLanes {
   static constexpr int width = kWidth;
@@ -144,35 +191,37 @@ struct NativeLanes {
   using F = HWY_NAMESPACE::F;
   using D = HWY_NAMESPACE::D;
 
-  static F load(const float* p) { return hn::LoadU(FloatTag(), p); }
-  static void store(F a, float* p) { hn::StoreU(a.v, FloatTag(), p); }
-  static D load_doubles(const double* p) { return {hn::LoadU(DoubleTag(), p), hn::LoadU(DoubleTag(), p + kWidth / 2)}; }
-  static D widen(F a) {
+  [[gnu::always_inline]] static F load(const float* p) { return hn::LoadU(FloatTag(), p); }
+  [[gnu::always_inline]] static void store(F a, float* p) { hn::StoreU(a.v, FloatTag(), p); }
+  [[gnu::always_inline]] static D load_doubles(const double* p) {
+    return {hn::LoadU(DoubleTag(), p), hn::LoadU(DoubleTag(), p + kWidth / 2)};
+  }
+  [[gnu::always_inline]] static D widen(F a) {
     const hn::Rebind<float, DoubleTag> half;
     return {hn::PromoteTo(DoubleTag(), hn::LowerHalf(half, a.v)), hn::PromoteTo(DoubleTag(), hn::UpperHalf(half, a.v))};
   }
-  static F narrow(D a) {
+  [[gnu::always_inline]] static F narrow(D a) {
     const hn::Rebind<float, DoubleTag> half;
-    return hn::Combine(FloatTag(), hn::DemoteTo(half, a.hi), hn::DemoteTo(half, a.lo));
+    return hn::Combine(FloatTag(), hn::DemoteTo(half, a.hi.v), hn::DemoteTo(half, a.lo.v));
   }
-  static unsigned bits(FMask mask) {
+  [[gnu::always_inline]] static unsigned bits(FMask mask) {
     uint8_t bytes[8] = {};
     hn::StoreMaskBits(FloatTag(), mask.m, bytes);
     return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
   }
-  static FMask narrow_mask(DMask mask) { return narrow(select(mask, D(1.0), D(0.0))) > F(0.5f); }
-  static FMask mask_from_bits(unsigned bits) {
+  [[gnu::always_inline]] static FMask narrow_mask(DMask mask) { return narrow(select(mask, D(1.0), D(0.0))) > F(0.5f); }
+  [[gnu::always_inline]] static FMask mask_from_bits(unsigned bits) {
     const uint8_t bytes[8] = {static_cast<uint8_t>(bits), static_cast<uint8_t>(bits >> 8)};
     return {hn::LoadMaskBits(FloatTag(), bytes)};
   }
-  static float max_lane(F a) { return hn::GetLane(hn::MaxOfLanes(FloatTag(), a.v)); }
+  [[gnu::always_inline]] static float max_lane(F a) { return hn::GetLane(hn::MaxOfLanes(FloatTag(), a.v)); }
 
   // A transpose in two steps: 128-bit quarters of four rows into one vector per position, then 4 x 4 inside each.
-  static void load_rows(const float* const* rows, F (&out)[8]) {
+  [[gnu::always_inline]] static void load_rows(const float* const* rows, F (&out)[8]) {
     transpose_quad(quad(rows, 0, 0), quad(rows, 1, 0), quad(rows, 2, 0), quad(rows, 3, 0), out);
     transpose_quad(quad(rows, 0, 4), quad(rows, 1, 4), quad(rows, 2, 4), quad(rows, 3, 4), out + 4);
   }
-  static void load_double_rows(const double* const* rows, D (&out)[4]) {
+  [[gnu::always_inline]] static void load_double_rows(const double* const* rows, D (&out)[4]) {
     constexpr int half = kWidth / 2;
     for (int k = 0; k < 4; k += 2) {
       const DoubleVec a = pair(rows, 0, k), b = pair(rows, 1, k);
@@ -181,7 +230,7 @@ struct NativeLanes {
       out[k + 1] = {hn::InterleaveUpper(DoubleTag(), a, b), hn::InterleaveUpper(DoubleTag(), c, d)};
     }
   }
-  static void add_rows(float* const* rows, const F (&columns)[8]) {
+  [[gnu::always_inline]] static void add_rows(float* const* rows, const F (&columns)[8]) {
     F low[4], high[4];
     transpose_quad(columns[0].v, columns[1].v, columns[2].v, columns[3].v, low);
     transpose_quad(columns[4].v, columns[5].v, columns[6].v, columns[7].v, high);
@@ -211,20 +260,21 @@ struct NativeLanes {
 
  private:
   template <class Tag>
-  static void add_row(Tag d, float* row, hn::Vec<Tag> a, hn::Vec<Tag> b, const auto& join) {
+  [[gnu::always_inline]] static void add_row(Tag d, float* row, hn::Vec<Tag> a, hn::Vec<Tag> b, const auto& join) {
     hn::StoreU(hn::Add(hn::LoadU(d, row), join(d, a, b)), d, row);
   }
   // Words offset..offset+3 of rows r, r+4, r+8, ...
-  static FloatVec quad(const float* const* rows, int r, int offset) {
+  [[gnu::always_inline]] static FloatVec quad(const float* const* rows, int r, int offset) {
     return quarters(FloatTag(), hn::Full128<float>(), rows + r, 4, offset);
   }
   // Doubles offset, offset+1 of rows r, r+2, r+4, ...
-  static DoubleVec pair(const double* const* rows, int r, int offset) {
+  [[gnu::always_inline]] static DoubleVec pair(const double* const* rows, int r, int offset) {
     return quarters(DoubleTag(), hn::Full128<double>(), rows + r, 2, offset);
   }
   // A vector of the 128 bits at `offset` in rows 0, stride, 2 stride, ...
   template <class Tag, class Tag128, class T>
-  static hn::Vec<Tag> quarters(Tag d, Tag128 d128, const T* const* rows, int stride, int offset) {
+  [[gnu::always_inline]] static hn::Vec<Tag> quarters(Tag d, Tag128 d128, const T* const* rows, int stride,
+                                                      int offset) {
     constexpr int count = static_cast<int>(HWY_LANES(T) / (16 / sizeof(T)));
     const auto at = [&](int k) { return hn::LoadU(d128, rows[k * stride] + offset); };
     if constexpr (count == 1) {
@@ -236,7 +286,7 @@ struct NativeLanes {
       return hn::Combine(d, hn::Combine(half, at(3), at(2)), hn::Combine(half, at(1), at(0)));
     }
   }
-  static void transpose_quad(FloatVec a, FloatVec b, FloatVec c, FloatVec e, F* out) {
+  [[gnu::always_inline]] static void transpose_quad(FloatVec a, FloatVec b, FloatVec c, FloatVec e, F* out) {
     const FloatTag d;
     const DoubleTag dd;
     const auto ab_low = hn::BitCast(dd, hn::InterleaveLower(d, a, b)),

@@ -67,7 +67,11 @@ struct SolidLanes {
 
   // The arrays are left as they are: only the block's slots are written and read.
   SolidLanes(const ChunkTask<Real>& t, const SolidBlock& b, SolidSlot<Real>* s, int first_lane)
-      : task(t), block(b), slots(s), lane(first_lane), i(gather_bodies<L>(t.old_particles, b.i + first_lane)) {}
+      : task(t),
+        block(b),
+        slots(s),
+        lane(first_lane),
+        i(gather_bodies<L>(t.old_particles + t.begin, b.i + first_lane)) {}
 
   const uint32_t* primitives(uint32_t s) const { return slots[s].primitive + lane; }
 
@@ -150,7 +154,7 @@ inline PairConstants<typename L::F> solid_constants_of(const SolidLanes<L>& lane
   if constexpr (Traits::uniform) return broadcast_constants<L>(task.materials->row(0, task.materials->columns - 1));
   const Real* rows[L::width];
   for (int k = 0; k < L::width; ++k)
-    rows[k] = task.materials->row(task.old_particles[lanes.block.i[lanes.lane + k]].kind(),
+    rows[k] = task.materials->row(task.old_particles[task.begin + lanes.block.i[lanes.lane + k]].kind(),
                                   lanes.surface(s)[lanes.primitives(s)[k]].column);
   return gather_constants<L>(rows);
 }
@@ -185,7 +189,7 @@ inline void solid_contact(const SolidLanes<L>& lanes, uint32_t s, ContactHistory
                                      lanes.task.settings->limit_attraction, history);
   const Vec<F> zero{F(0), F(0), F(0)};
   force += select_vec(lanes.kept[s], r.force, zero);
-  torque += select_vec(lanes.kept[s], -(arm * r.lever_torque) - r.rolling, zero);
+  torque += select_vec(lanes.kept[s], fma(-arm, r.lever_torque, -r.rolling), zero);
 }
 
 template <class L, class Traits>

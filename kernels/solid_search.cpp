@@ -84,10 +84,9 @@ class Search {
 
   void lay_block(size_t begin, size_t end) {
     SolidBlock block{};
-    for (uint32_t& i : block.i) i = t_.count;
     uint8_t slots[3] = {0, 0, 0};
     for (size_t k = begin; k < end; ++k) {
-      block.i[k - begin] = near_[k].particle;
+      block.i[k - begin] = static_cast<uint16_t>(near_[k].particle - t_.begin);
       for (int kind = 0; kind < 3; ++kind) slots[kind] = std::max(slots[kind], near_[k].counts[kind]);
     }
     block.segments = slots[0], block.quads = slots[1], block.revolutions = slots[2];

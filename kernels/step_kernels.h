@@ -18,7 +18,6 @@ struct StepKernels {
 struct KernelChoice {
   RollingModel rolling = RollingModel::epsd2;
   bool uniform = true;  // one row of material constants for all pairs, one for all walls
-  bool periodic = false;
 };
 
 // Names of the instruction sets this build has and this machine can run, best first: "avx512", "avx2" or "neon",

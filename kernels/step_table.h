@@ -7,23 +7,20 @@
 namespace scree {
 
 template <class L, RollingModel rolling>
-StepKernels<typename L::Real> kernels_for(bool uniform, bool periodic) {
-  const auto step = uniform ? (periodic ? &step_chunk<L, PassTraits<rolling, true, true>>
-                                        : &step_chunk<L, PassTraits<rolling, true, false>>)
-                            : (periodic ? &step_chunk<L, PassTraits<rolling, false, true>>
-                                        : &step_chunk<L, PassTraits<rolling, false, false>>);
-  return {step, &search_chunk<L>};
+StepKernels<typename L::Real> kernels_for(bool uniform) {
+  return {uniform ? &step_chunk<L, PassTraits<rolling, true>> : &step_chunk<L, PassTraits<rolling, false>>,
+          &search_chunk<L>};
 }
 
 template <class L>
 StepKernels<typename L::Real> kernels_for(const KernelChoice& choice) {
   switch (choice.rolling) {
     case RollingModel::none:
-      return kernels_for<L, RollingModel::none>(choice.uniform, choice.periodic);
+      return kernels_for<L, RollingModel::none>(choice.uniform);
     case RollingModel::cdt:
-      return kernels_for<L, RollingModel::cdt>(choice.uniform, choice.periodic);
+      return kernels_for<L, RollingModel::cdt>(choice.uniform);
     default:
-      return kernels_for<L, RollingModel::epsd2>(choice.uniform, choice.periodic);
+      return kernels_for<L, RollingModel::epsd2>(choice.uniform);
   }
 }
 

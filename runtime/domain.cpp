@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kMaxOverlapShare =
     0.5;                                 // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted
+constexpr double kWayMargin = 1 + 1e-6;  // speeds are compared in single precision
 constexpr double kMaxTravelShare = 0.2;  // of the smallest radius, in one step
 
 uint64_t mix(uint64_t h) {  // splitmix64's finaliser
@@ -38,12 +39,13 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
   const Vec3 length = c.domain.max - c.domain.min;
   const double lengths[3] = {length.x, length.y, length.z}, gravity[3] = {c.gravity.x, c.gravity.y, c.gravity.z};
   settings_.dt = time_step_of(c);
-  for (int a = 0; a < 3; ++a) settings_.gravity[a] = gravity[a], settings_.period[a] = periodic_[a] ? lengths[a] : 0;
+  for (int a = 0; a < 3; ++a)
+    settings_.gravity[a] = gravity[a], settings_.period[a] = periodic_[a] ? lengths[a] : 0,
+    settings_.inverse_period[a] = periodic_[a] ? 1 / lengths[a] : 0;
   settings_.limit_attraction = c.contact.limit_attraction;
   materials_ = material_table<Real>(c);
   isa_ = std::is_same_v<Real, double> ? "reference" : options.isa.empty() ? available_isas().front() : options.isa;
-  kernels_ = select_kernels<Real>(isa_, {c.contact.rolling, materials_.uniform_pairs && materials_.uniform_walls,
-                                         periodic_[0] || periodic_[1] || periodic_[2]});
+  kernels_ = select_kernels<Real>(isa_, {c.contact.rolling, materials_.uniform_pairs && materials_.uniform_walls});
   solid_identity_.resize(solid_.primitives.size());
   for (uint32_t k = 0; k < solid_identity_.size(); ++k) solid_identity_[k] = k;
   reserve(0);
@@ -141,8 +143,9 @@ void Domain<Real>::step() {
     all.too_fast |= o.too_fast;
   }
   max_speed_ = all.max_speed;
-  travel_ += max_speed_ * settings_.dt;
-  near_travel_ += max_speed_ * settings_.dt;
+  const double way = kWayMargin * max_speed_ * settings_.dt;
+  travel_ += way;
+  near_travel_ += way;
   ++counters_.steps;
   counters_.particle_steps += count_;
   if (all.too_fast || all.max_pair_overlap > kMaxOverlapShare || all.max_solid_overlap > kMaxOverlapShare)
@@ -242,12 +245,11 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
     const auto look = [&](uint32_t i, uint32_t j) {
       if (j < chunk_begin(c)) return;  // the other chunk lists it too
       const ParticleState a = state(i), b = state(j);
-      const Vec3 d = minimum_image(a.position - b.position, settings_.period);
+      const Vec3 d = minimum_image(a.position - b.position, settings_.period, settings_.inverse_period);
       const double overlap = a.radius + b.radius - norm(d);
       if (overlap > 0) result.push_back({a.id, b.id, overlap});
     };
-    for (uint32_t k = 0; k < contacts_[c].pairs; ++k)
-      look(contacts_[c].blocks[k / kBlock].i[k % kBlock], contacts_[c].blocks[k / kBlock].j[k % kBlock]);
+    for (uint32_t k = 0; k < contacts_[c].pairs; ++k) look(contacts_[c].pair_i(k), contacts_[c].pair_j(k));
     for (const NearPair& n : contacts_[c].near) look(n.i, n.j);
   }
   return result;

@@ -16,11 +16,12 @@ namespace scree {
 
 namespace {
 
-// Sizes of the lists, in units of the largest radius or of a step; measured on settled beds and drains.
-constexpr double kInnerShare = 0.04;     // inner skin / largest radius: engine.md's 0.02 D
-constexpr double kSkinAtRest = 0.4;      // outer skin / largest radius: 0.2 D
-constexpr double kSkinMost = 1.2;        // of the largest radius, in fast flow
-constexpr double kStepsPerRebuild = 20;  // what the skin of a fast flow is chosen for
+// Sizes of the lists in units of the largest radius, from the largest speed seen; measured on settled beds and drains.
+// The outer skin lasts kStepsPerRebuild steps at that speed. The inner one weighs the pairs that are evaluated without
+// touching (more with a wider skin) against the checks of those that wait (more often with a narrower one): the best
+// grows with the square root of the way per step.
+constexpr double kStepsPerRebuild = 40, kSkinLeast = 0.2, kSkinMost = 1.2;
+constexpr double kInnerPerRootWay = 0.4, kInnerLeast = 0.004, kInnerMost = 0.1;
 constexpr uint32_t kSmallestChunk = 256;
 constexpr uint32_t kWantedChunks = 64;  // small runs get smaller chunks, so that several threads find work
 
@@ -58,12 +59,13 @@ void Domain<Real>::rebuild() {
 
 template <class Real>
 void Domain<Real>::choose_skin() {
-  const double way = 2 * kStepsPerRebuild * max_speed_ * settings_.dt;
-  skin_ = fixed_skin_ > 0 ? fixed_skin_ : std::clamp(way, kSkinAtRest * max_radius_, kSkinMost * max_radius_);
+  if (count_ == 0) return;
+  const double way = 2 * max_speed_ * settings_.dt / max_radius_;  // two particles' in a step, in radii
+  skin_ = fixed_skin_ > 0 ? fixed_skin_ : std::clamp(kStepsPerRebuild * way, kSkinLeast, kSkinMost) * max_radius_;
   for (const double period : settings_.period)
     if (period > 0) skin_ = std::min(skin_, 0.4999 * period - 2 * max_radius_);
-  if (skin_ <= 0 && count_ > 0) throw RunError("a periodic axis is shorter than twice the largest diameter");
-  inner_ = std::min(kInnerShare * max_radius_, skin_);
+  if (skin_ <= 0) throw RunError("a periodic axis is shorter than twice the largest diameter");
+  inner_ = std::min(std::clamp(kInnerPerRootWay * std::sqrt(way), kInnerLeast, kInnerMost) * max_radius_, skin_);
 }
 
 // Takes the histories out of the lists; they wait in history_ for the next rebuild.
@@ -79,11 +81,11 @@ void Domain<Real>::gather_histories() {
   history_.chunk_size = chunk_size_, history_.count = contacts_.empty() ? 0 : chunk_end(contacts_.size() - 1);
   history_.pairs.resize(contacts_.size()), history_.solids.resize(contacts_.size());
   parallel_for(contacts_.size(), [&](size_t c) {
-    const uint32_t begin = chunk_begin(c), size = chunk_end(c) - begin;
-    history_.pairs[c].gather(size, [&](const auto& visit) { list_live_pairs(contacts_[c], begin, visit); });
+    const uint32_t size = contacts_[c].end - contacts_[c].begin;
+    history_.pairs[c].gather(size, [&](const auto& visit) { list_live_pairs(contacts_[c], visit); });
     const auto identity = [&](int kind, uint32_t row) { return tables_.identity(kind, row); };
-    history_.solids[c].gather(size, [&](const auto& visit) { list_live_solids(contacts_[c], begin, identity, visit); });
-    contacts_[c].clear();
+    history_.solids[c].gather(size, [&](const auto& visit) { list_live_solids(contacts_[c], identity, visit); });
+    contacts_[c].clear(0, 0, 0);
   });
 }
 
@@ -192,7 +194,7 @@ void Domain<Real>::search_pairs() {
   contacts_.resize(chunks());
   outcomes_.resize(chunks());
   parallel_for(chunks(), [&](size_t c) {
-    contacts_[c].clear();
+    contacts_[c].clear(chunk_begin(c), chunk_end(c), count_);
     kernels_.search({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, skin_, inner_, old_index_.data(),
                      &history_, &contacts_[c]});
   });
@@ -202,11 +204,12 @@ template <class Real>
 void Domain<Real>::search_solids() {
   Timer t(counters_.solid_search_seconds);
   if (solid_.primitives.empty()) return;
+  const double solid_reach = 0.5 * skin_;  // the solid stands still: a particle comes no nearer than its own way
   std::atomic<uint32_t> crowded{count_};
   parallel_for(chunks(), [&](size_t c) {
     const uint32_t bad =
-        search_solid<Real>({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, skin_, index_.get(), &prepared_,
-                            &tables_, old_index_.data(), &history_, &contacts_[c]});
+        search_solid<Real>({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, solid_reach, index_.get(),
+                            &prepared_, &tables_, old_index_.data(), &history_, &contacts_[c]});
     if (bad != count_) crowded = bad;
   });
   if (crowded == count_) return;
@@ -214,7 +217,7 @@ void Domain<Real>::search_solids() {
   throw RunError(fmt::format(
       "particle {} of radius {:.4g} m at ({:.6g}, {:.6g}, {:.6g}) m has more than {} fibres and walls within {:.4g} m; "
       "use smaller particles, a coarser fibre network, or a smaller [neighbour] skin",
-      s.id, s.radius, s.position.x, s.position.y, s.position.z, kMaxSlots, s.radius + skin_));
+      s.id, s.radius, s.position.x, s.position.y, s.position.z, kMaxSlots, s.radius + solid_reach));
 }
 
 template class Domain<float>;

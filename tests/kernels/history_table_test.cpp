@@ -33,8 +33,11 @@ class Histories : public ::testing::Test {
   std::array<ChunkContacts<float>, 3> contacts_;
   HistoryTable<float> table_;
 
+  Histories() {
+    for (uint32_t c = 0; c < 3; ++c) contacts_[c].clear(c * kSize, std::min(kCount, (c + 1) * kSize), kCount);
+  }
   static void add_pair(ChunkContacts<float>& c, uint32_t i, uint32_t j, const Values& v) {
-    PairBlock<float>& block = c.append(i, j, kCount);
+    PairBlock<float>& block = c.append(i, j);
     put(block, (c.pairs - 1) % kBlock, v);
   }
   // As the step stores it: inside a chunk once, across two chunks in both, seen from each.
@@ -47,10 +50,10 @@ class Histories : public ::testing::Test {
     table_.chunk_size = kSize, table_.count = kCount;
     table_.pairs.resize(3), table_.solids.resize(3);
     for (uint32_t c = 0; c < 3; ++c) {
-      const uint32_t begin = c * kSize, size = std::min(kCount, begin + kSize) - begin;
-      table_.pairs[c].gather(size, [&](const auto& visit) { list_live_pairs(contacts_[c], begin, visit); });
+      const uint32_t size = contacts_[c].end - contacts_[c].begin;
+      table_.pairs[c].gather(size, [&](const auto& visit) { list_live_pairs(contacts_[c], visit); });
       const auto identity = [](int kind, uint32_t row) { return 1000 * static_cast<uint32_t>(kind) + row; };
-      table_.solids[c].gather(size, [&](const auto& visit) { list_live_solids(contacts_[c], begin, identity, visit); });
+      table_.solids[c].gather(size, [&](const auto& visit) { list_live_solids(contacts_[c], identity, visit); });
     }
   }
   // What a rebuilt pair (a, b) finds, if anything.
@@ -134,7 +137,7 @@ TEST_F(Histories, OfMoreThanOneBlockAreAllGathered) {
 TEST_F(Histories, OfTheSolidAreFoundByTheIdentityOfThePrimitive) {
   ChunkContacts<float>& c = contacts_[1];
   SolidBlock block{};
-  for (int lane = 0; lane < kBlock; ++lane) block.i[lane] = 4 + static_cast<uint32_t>(lane) % 4;
+  for (int lane = 0; lane < kBlock; ++lane) block.i[lane] = static_cast<uint16_t>(lane % 4);
   block.segments = 1, block.quads = 1, block.revolutions = 1;
   c.solid_blocks.push_back(block);
   for (uint32_t s = 0; s < 3; ++s) {

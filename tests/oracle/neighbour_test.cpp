@@ -330,6 +330,7 @@ struct SearchScene {
     Listed result;
     for (uint32_t begin = 0; begin < count; begin += chunk) {
       ChunkContacts<float> contacts;
+      contacts.clear(begin, std::min(count, begin + chunk), count);
       const uint32_t end = std::min(count, begin + chunk);
       kernels.search(
           {particles.data(), begin, end, count, &grid, skin, inner, old_index.data(), &no_history, &contacts});
@@ -339,14 +340,21 @@ struct SearchScene {
         EXPECT_TRUE(result.owners[std::minmax(i, j)].insert(begin / chunk).second) << "listed twice in one chunk";
       };
       for (uint32_t k = 0; k < contacts.pairs; ++k) {
-        const auto& block = contacts.blocks[k / kBlock];
-        take(block.i[k % kBlock], block.j[k % kBlock]);
-        ++result.active[std::minmax(block.i[k % kBlock], block.j[k % kBlock])];
+        const uint32_t i = contacts.pair_i(k), j = contacts.pair_j(k);
+        take(i, j);
+        ++result.active[std::minmax(i, j)];
+        const uint32_t row = contacts.blocks[k / kBlock].row[k % kBlock];
+        EXPECT_EQ(row, j >= begin && j < end ? j - begin : end - begin);
+        if (k < contacts.first_wrapping * kBlock) {
+          for (int a = 0; a < 3; ++a)
+            EXPECT_LT(std::abs((&particles[i].x)[a] - (&particles[j].x)[a]), period[a] > 0 ? 0.5 * period[a] : 1e9);
+        }
       }
       for (const NearPair& pair : contacts.near) take(pair.i, pair.j);
       for (uint32_t k = contacts.pairs; k < contacts.blocks.size() * kBlock; ++k) {
-        EXPECT_EQ(contacts.blocks[k / kBlock].i[k % kBlock], count);
-        EXPECT_EQ(contacts.blocks[k / kBlock].j[k % kBlock], count + 1);
+        EXPECT_EQ(contacts.pair_i(k), begin);
+        EXPECT_EQ(contacts.pair_j(k), count);
+        EXPECT_EQ(contacts.blocks[k / kBlock].row[k % kBlock], end - begin);
       }
     }
     return result;
