@@ -85,6 +85,17 @@ struct ChunkContacts {
     return b;
   }
 
+  // What a checkpoint holds, each under its name.
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("begin", &ChunkContacts::begin), visit("end", &ChunkContacts::end), visit("dummy", &ChunkContacts::dummy);
+    visit("blocks", &ChunkContacts::blocks), visit("first_wrapping", &ChunkContacts::first_wrapping);
+    visit("pairs", &ChunkContacts::pairs);
+    visit("near", &ChunkContacts::near);
+    visit("solid_blocks", &ChunkContacts::solid_blocks);
+    visit("slots", &ChunkContacts::slots);
+  }
+
   size_t bytes() const {
     return blocks.capacity() * sizeof(blocks[0]) + near.capacity() * sizeof(near[0]) +
            solid_blocks.capacity() * sizeof(solid_blocks[0]) + slots.capacity() * sizeof(slots[0]);

@@ -20,6 +20,12 @@ struct ChunkHistory {
   std::vector<uint32_t> first;  // chunk size + 1
   std::vector<HistoryEntry<Real>> entries;
 
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("first", &ChunkHistory::first);
+    visit("entries", &ChunkHistory::entries);
+  }
+
   // Fills from contacts listed twice in the same order: list(visit) calls visit(local particle, partner, history,
   // stride).
   template <class List>
@@ -47,6 +53,14 @@ template <class Real>
 struct HistoryTable {
   uint32_t chunk_size = 1, count = 0;  // of the old order
   std::vector<ChunkHistory<Real>> pairs, solids;
+
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("chunk_size", &HistoryTable::chunk_size);
+    visit("count", &HistoryTable::count);
+    visit("pairs", &HistoryTable::pairs);
+    visit("solids", &HistoryTable::solids);
+  }
 
   // Copies the history of old particles a and b, as seen from a, to a lane of a block. False if there is none.
   bool copy_pair(uint32_t a, uint32_t b, Real* to) const {

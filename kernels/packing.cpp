@@ -30,10 +30,11 @@ class Packing {
     confined_.assign(moving_, 0);
   }
 
-  PackingOutcome run(int max_iterations) {
+  PackingOutcome run(int max_iterations, const std::function<void()>& look) {
     PackingOutcome outcome;
     find_neighbours();
     for (; outcome.iterations < max_iterations; ++outcome.iterations) {
+      look();
       const Sweep s = sweep();
       outcome.worst_overlap = s.worst_overlap;
       outcome.confined = s.worst_overlap <= 0 && all_confined();
@@ -150,8 +151,8 @@ class Packing {
 }  // namespace
 
 PackingOutcome push_apart(std::span<PackedSphere> spheres, std::span<const PackedSphere> fixed, const Confine& confine,
-                          int max_iterations) {
-  return Packing(spheres, fixed, confine).run(max_iterations);
+                          int max_iterations, const std::function<void()>& look) {
+  return Packing(spheres, fixed, confine).run(max_iterations, look);
 }
 
 }  // namespace scree

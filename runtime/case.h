@@ -137,6 +137,11 @@ struct OutputSettings {
   bool final_vtk = true;
 };
 
+struct CheckpointSettings {
+  double interval = 600;  // s of wall-clock time between checkpoints
+  uint64_t keep = 2;      // how many stay; 0: none is written
+};
+
 struct TimeSettings {
   double step = 0;                 // s; if 0, rayleigh_fraction is used
   double rayleigh_fraction = 0.2;  // of the smallest Rayleigh time
@@ -173,6 +178,7 @@ struct Case {
   std::vector<Outlet> outlets;
   std::vector<Meter> meters;
   OutputSettings output;
+  CheckpointSettings checkpoint;
   std::string understood;  // the case as TOML, merged, with defaults filled in: see runtime/case_writer.h
 };
 

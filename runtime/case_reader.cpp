@@ -76,6 +76,12 @@ void read_output(TableReader t, OutputSettings& output) {
   t.finish();
 }
 
+void read_checkpoint(TableReader t, CheckpointSettings& checkpoint) {
+  checkpoint.interval = t.number("interval", positive(1e9, "s (wall-clock)"), checkpoint.interval);
+  checkpoint.keep = t.whole("keep", between(0, 1000, "checkpoints (0: none is written)"), checkpoint.keep);
+  t.finish();
+}
+
 // What a material belongs to, for the message about a missing pair.
 struct Touching {
   uint32_t first, second;
@@ -156,6 +162,7 @@ void read_settings(TableReader& top, Case& c) {
   c.neighbour.skin = neighbour.number("skin", between(0, 1, "m (0: chosen by the program)"), 0);
   neighbour.finish();
   read_output(top.table("output"), c.output);
+  read_checkpoint(top.table("checkpoint"), c.checkpoint);
 }
 
 void read_materials(TableReader& top, Case& c) {

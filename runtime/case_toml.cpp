@@ -145,6 +145,8 @@ void apply_override(CaseNode& tree, const std::string& text) {
 
 }  // namespace
 
+CaseNode parse_case_text(const std::string& text, const std::string& file) { return parse_text(text, file); }
+
 CaseNode load_case_tree(const std::string& path, const std::vector<std::string>& overrides) {
   Loader loader;
   loader.tree.value = CaseNode::Table{};

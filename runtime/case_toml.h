@@ -53,6 +53,9 @@ std::string element_label(std::string_view array_key, const CaseNode& element);
 // Throws CaseError.
 CaseNode load_case_tree(const std::string& path, const std::vector<std::string>& overrides);
 
+// One file's text alone; `file` names it in errors. Throws CaseError.
+CaseNode parse_case_text(const std::string& text, const std::string& file);
+
 // The value as TOML in one line.
 std::string inline_toml(const CaseNode& node);
 

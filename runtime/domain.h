@@ -35,6 +35,8 @@ class Domain final : public Engine {
   std::string isa() const override { return isa_; }
   const EngineCounters& counters() const override { return counters_; }
   size_t bytes() const override;
+  void save(StateWriter& out) const override;
+  void load(StateReader& in) override;
   double sum(const std::function<double(const ParticleState&)>& f) const override;
   std::vector<ParticleState> particles() const override;
   uint64_t state_hash() const override;
@@ -64,6 +66,18 @@ class Domain final : public Engine {
 
   void advance_chunks();
   [[noreturn]] void fail_step(const ChunkOutcome& outcome) const;
+
+  // The state beside the particles themselves. What is not here follows from the case, or is worked out anew by each
+  // rebuild; histories only wait in history_ while the lists are not valid.
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("count", &Domain::count_), visit("chunk_size", &Domain::chunk_size_), visit("next_id", &Domain::next_id_);
+    visit("max_radius", &Domain::max_radius_), visit("min_radius", &Domain::min_radius_);
+    visit("max_speed", &Domain::max_speed_), visit("skin", &Domain::skin_), visit("inner", &Domain::inner_);
+    visit("travel", &Domain::travel_), visit("near_travel", &Domain::near_travel_);
+    visit("lists_valid", &Domain::lists_valid_), visit("counters", &Domain::counters_);
+    visit("solid_identity", &Domain::solid_identity_), visit("contacts", &Domain::contacts_);
+  }
 
   Bounds box_;
   bool periodic_[3];

@@ -17,6 +17,9 @@
 
 namespace scree {
 
+class StateWriter;  // runtime/state_archive.h
+class StateReader;
+
 // A particle as the outside sees it. Velocities are half a step behind positions (leapfrog), except before the first
 // step.
 struct ParticleState {
@@ -35,6 +38,18 @@ struct EngineCounters {
   uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, inserted = 0, removed = 0;
   std::vector<double> removed_mass;  // kg, by what the removal rule said
   double step_seconds = 0, history_seconds = 0, sort_seconds = 0, pair_search_seconds = 0, solid_search_seconds = 0;
+
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("steps", &EngineCounters::steps), visit("rebuilds", &EngineCounters::rebuilds);
+    visit("near_checks", &EngineCounters::near_checks), visit("particle_steps", &EngineCounters::particle_steps);
+    visit("inserted", &EngineCounters::inserted), visit("removed", &EngineCounters::removed);
+    visit("removed_mass", &EngineCounters::removed_mass);
+    visit("step_seconds", &EngineCounters::step_seconds), visit("history_seconds", &EngineCounters::history_seconds);
+    visit("sort_seconds", &EngineCounters::sort_seconds);
+    visit("pair_search_seconds", &EngineCounters::pair_search_seconds);
+    visit("solid_search_seconds", &EngineCounters::solid_search_seconds);
+  }
 };
 
 struct EngineOptions {
@@ -66,6 +81,11 @@ class Engine {
   virtual std::string isa() const = 0;
   virtual const EngineCounters& counters() const = 0;
   virtual size_t bytes() const = 0;  // held in arrays now
+
+  // The whole state, lists included: a fresh engine of the same case that loads it goes on to the same bits. Saving
+  // changes nothing.
+  virtual void save(StateWriter& out) const = 0;
+  virtual void load(StateReader& in) = 0;
 
   // Sum of f over all particles; the same bits for any number of threads.
   virtual double sum(const std::function<double(const ParticleState&)>& f) const = 0;

@@ -13,6 +13,7 @@
 #include "kernels/step_kernels.h"
 #include "runtime/case_error.h"
 #include "runtime/case_reader.h"
+#include "runtime/run_folder.h"
 #include "runtime/simulation.h"
 #include "runtime/time_scales.h"
 
@@ -27,6 +28,8 @@ struct Arguments {
   std::string case_file, out, isa;
   std::vector<std::string> set;
   int threads = 0;
+  double checkpoint_every = 0;  // s; 0: not given
+  bool resume = false;
 };
 
 // results/<case>, or the next of results/<case>-2, -3, ... that is free: nothing is overwritten.
@@ -38,11 +41,16 @@ std::filesystem::path default_folder(const std::string& case_file) {
 }
 
 int run(const Arguments& a) {
-  const scree::Case c = scree::read_case(a.case_file, a.set);
+  std::vector<std::string> set = a.set;
+  if (a.checkpoint_every > 0) set.push_back(fmt::format("checkpoint.interval={}", a.checkpoint_every));
+  const scree::Case c = scree::read_case(a.case_file, set);
   scree::RunOptions options;
   options.out = a.out.empty() ? default_folder(a.case_file) : std::filesystem::path(a.out);
-  if (std::filesystem::exists(options.out) && !std::filesystem::is_empty(options.out)) {
-    fmt::print(stderr, "scree: the results folder {} is not empty: name another with --out, or remove it\n",
+  options.resume = a.resume;
+  if (!a.resume && std::filesystem::exists(options.out) && !std::filesystem::is_empty(options.out)) {
+    fmt::print(stderr,
+               "scree: the results folder {} is not empty: go on with its run by --resume, name another with --out, or "
+               "remove it\n",
                options.out.string());
     return kBadInput;
   }
@@ -50,8 +58,10 @@ int run(const Arguments& a) {
   options.engine.isa = a.isa;
   options.show_progress = isatty(STDERR_FILENO);
   options.stop = &stop_requested;
+  options.tell = [](const std::string& text) { fmt::print(stderr, "scree: {}\n", text); };
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the system's limit is an error of that file, with its name
   for (const std::string& warning : scree::time_step_warnings(c)) fmt::print(stderr, "scree: warning: {}\n", warning);
 
   const scree::RunResult result = scree::run_case(c, options);
@@ -64,9 +74,21 @@ int run(const Arguments& a) {
   if (result.status == scree::RunStatus::failed) fmt::print(stderr, "scree: the run failed: {}\n", result.message);
   if (result.status == scree::RunStatus::interrupted)
     fmt::print(stderr, "scree: interrupted; the results so far are complete\n");
+  if (result.status != scree::RunStatus::done && !result.checkpoint.empty())
+    fmt::print(stderr, "scree: `scree resume {}` goes on from {}\n", result.out.string(), result.checkpoint);
   return result.status == scree::RunStatus::done     ? kDone
          : result.status == scree::RunStatus::failed ? kFailed
                                                      : kInterrupted;
+}
+
+int resume(Arguments a) {
+  const std::filesystem::path case_file = std::filesystem::path(a.out) / "case.toml";
+  if (!std::filesystem::is_regular_file(case_file)) {
+    fmt::print(stderr, "scree: {} is not the results folder of a run: it has no case.toml\n", a.out);
+    return kBadInput;
+  }
+  a.case_file = case_file.string(), a.resume = true;
+  return run(a);
 }
 
 int check(const Arguments& a) {
@@ -79,14 +101,27 @@ int check(const Arguments& a) {
   return kDone;
 }
 
+void add_threads_option(CLI::App& command, Arguments& a) {
+  command.add_option("--threads", a.threads, "threads (default: all processors); the results do not depend on it")
+      ->check(CLI::Range(1, 4096));
+}
+
 void add_case_options(CLI::App& command, Arguments& a) {
   command.add_option("CASE", a.case_file, "the case file (TOML)")->required();
   command.add_option(
       "--set", a.set,
       "change a key of the case: key.path=value, e.g. "
       "lattice.fibre_diameter=1.36e-3,\nmaterial.steel.youngs_modulus=1e8, contact.rolling=cdt; may be repeated");
-  command.add_option("--threads", a.threads, "threads (default: all processors); the results do not depend on it")
-      ->check(CLI::Range(1, 4096));
+  add_threads_option(command, a);
+}
+
+void add_run_options(CLI::App& command, Arguments& a) {
+  command.add_option("--isa", a.isa, "instruction set of the kernels (default: the best this machine has)")
+      ->check(CLI::IsMember(scree::available_isas()));
+  command
+      .add_option("--checkpoint-every", a.checkpoint_every,
+                  "wall-clock seconds between checkpoints (default: the case's checkpoint.interval, 600)")
+      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace
@@ -101,6 +136,7 @@ int main(int argc, char** argv) {
       "  ls cases/examples                       one example per feature\n"};
   app.footer(
       "Results: mass_flow.csv, meters.csv, summary.json, particles.vtp (ParaView, OVITO), case.toml, run.log.\n"
+      "A run that was interrupted, killed or failed goes on to the same bits:  scree resume DIR\n"
       "Exit codes: 0 done, 2 bad input, 3 the run failed, 130 interrupted (Ctrl-C ends a run cleanly).");
   app.set_version_flag("--version", "scree 0.1.0");
   app.require_subcommand(1);
@@ -108,8 +144,12 @@ int main(int argc, char** argv) {
   CLI::App& run_command = *app.add_subcommand("run", "run a case");
   add_case_options(run_command, a);
   run_command.add_option("--out", a.out, "results folder (default: results/<case>, or the next free name)");
-  run_command.add_option("--isa", a.isa, "instruction set of the kernels (default: the best this machine has)")
-      ->check(CLI::IsMember(scree::available_isas()));
+  run_command.add_flag("--resume", a.resume, "go on from the newest checkpoint in the results folder, if it has one");
+  add_run_options(run_command, a);
+  CLI::App& resume_command = *app.add_subcommand("resume", "go on with an unfinished run from its newest checkpoint");
+  resume_command.add_option("DIR", a.out, "its results folder")->required();
+  add_threads_option(resume_command, a);
+  add_run_options(resume_command, a);
   CLI::App& check_command = *app.add_subcommand("check", "validate a case and print what would run");
   add_case_options(check_command, a);
   try {
@@ -119,8 +159,11 @@ int main(int argc, char** argv) {
     return code == 0 ? kDone : kBadInput;
   }
   try {
-    return run_command.parsed() ? run(a) : check(a);
+    return run_command.parsed() ? run(a) : resume_command.parsed() ? resume(a) : check(a);
   } catch (const scree::CaseError& e) {
+    fmt::print(stderr, "scree: {}\n", e.what());
+    return kBadInput;
+  } catch (const scree::RunRefused& e) {
     fmt::print(stderr, "scree: {}\n", e.what());
     return kBadInput;
   } catch (const std::invalid_argument& e) {

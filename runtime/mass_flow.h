@@ -17,6 +17,11 @@ struct FlowSample {
   double time;                     // s since the run began
   std::vector<double> discharged;  // kg, per outlet
   double total() const;
+
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("time", &FlowSample::time), visit("discharged", &FlowSample::discharged);
+  }
 };
 
 struct SteadyFlow {

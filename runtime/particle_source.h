@@ -15,6 +15,13 @@ class ParticleSource {
   // kind furthest behind its share comes next.
   ParticleState draw();
 
+  // What drawing changes.
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("drawn_mass", &ParticleSource::drawn_mass_);
+    visit("random", &ParticleSource::random_);
+  }
+
  private:
   double draw_diameter(const SizeDistribution& size);
 

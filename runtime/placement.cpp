@@ -166,7 +166,8 @@ Vec3 random_allowed_point(const FreeSpace& space, double radius, Random& random)
 
 // One sphere in each of about as many equal cells as there are spheres, anywhere in it. Points drawn without cells have
 // dense and loose patches, which take pushing apart thousands of sweeps to even out; these take a hundred.
-void place_stratified(std::vector<PackedSphere>& spheres, const FreeSpace& space, Random& random) {
+void place_stratified(std::vector<PackedSphere>& spheres, const FreeSpace& space, Random& random,
+                      const std::function<void()>& look) {
   if (spheres.empty()) return;
   double radius = 0;
   for (const PackedSphere& s : spheres) radius += s.radius / static_cast<double>(spheres.size());
@@ -176,7 +177,8 @@ void place_stratified(std::vector<PackedSphere>& spheres, const FreeSpace& space
   const int nx = cells(size.x), ny = cells(size.y), nz = cells(size.z);
   std::vector<Vec3> points;
   for (int k = 0; k < nz; ++k)
-    for (int j = 0; j < ny; ++j)
+    for (int j = 0; j < ny; ++j) {
+      look();
       for (int i = 0; i < nx; ++i)
         for (int tries = 0; tries < 8; ++tries) {
           const double x = random.uniform(), y = random.uniform(), z = random.uniform();
@@ -185,8 +187,10 @@ void place_stratified(std::vector<PackedSphere>& spheres, const FreeSpace& space
           points.push_back(p);
           break;
         }
+    }
   for (size_t k = points.size(); k > 1; --k) std::swap(points[k - 1], points[random.bits() % k]);
   for (size_t k = 0; k < spheres.size(); ++k) {
+    if (k % 1024 == 0) look();
     PackedSphere& s = spheres[k];
     s.position = k < points.size() ? space.confine(points[k], s.radius) : random_allowed_point(space, s.radius, random);
   }
@@ -195,7 +199,8 @@ void place_stratified(std::vector<PackedSphere>& spheres, const FreeSpace& space
 }  // namespace
 
 std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Solid& solid,
-                                std::span<const ParticleState> present, uint64_t stream) {
+                                std::span<const ParticleState> present, uint64_t stream,
+                                const std::function<void()>& look) {
   ParticleSource source(c, stage.mixture, c.seed, stream);
   Random random(c.seed, stream + 1000);
   std::vector<ParticleState> placed;
@@ -208,9 +213,10 @@ std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Sol
                                                   stage.count - placed.size(), source);
     std::vector<PackedSphere> spheres(share.size());
     for (size_t k = 0; k < share.size(); ++k) spheres[k].radius = share[k].radius;
-    place_stratified(spheres, space, random);
+    place_stratified(spheres, space, random, look);
     PackingOutcome outcome = push_apart(
-        spheres, fixed, [&](const Vec3& x, double radius) { return space.confine(x, radius); }, kPackingIterations);
+        spheres, fixed, [&](const Vec3& x, double radius) { return space.confine(x, radius); }, kPackingIterations,
+        look);
     if (outcome.worst_overlap > 0 || !outcome.confined)
       throw RunError(fmt::format(
           "region '{}' cannot hold {} particles without overlap (solid_fraction {}; after {} iterations the worst "

@@ -1,6 +1,7 @@
 // Puts particles into regions without overlaps: at once (fill) or batch by batch (pour).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -37,8 +38,10 @@ class FreeSpace {
 
 // A dense random packing: regions in order, each up to the stage's solid fraction of its free space, until mass or
 // count is reached. Throws RunError if they do not fit.
-std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Solid& solid,
-                                std::span<const ParticleState> present, uint64_t stream);
+// `look` is called now and then, as filling can take minutes: it may throw to give up.
+std::vector<ParticleState> fill(
+    const Case& c, const FillStage& stage, const Solid& solid, std::span<const ParticleState> present, uint64_t stream,
+    const std::function<void()>& look = [] {});
 
 // One pour: owes what the rate has brought, places what finds room.
 class Pour {
@@ -52,6 +55,16 @@ class Pour {
 
   // Particles for `elapsed` seconds since the pour began, clear of those present.
   std::vector<ParticleState> batch(double elapsed, std::span<const ParticleState> present);
+
+  // What pouring changes.
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("mass", &Pour::mass_);
+    visit("count", &Pour::count_);
+    visit("waiting", &Pour::waiting_);
+    visit("source", &Pour::source_);
+    visit("random", &Pour::random_);
+  }
 
  private:
   PourStage stage_;

@@ -27,6 +27,11 @@ class Random {
     return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * uniform());
   }
 
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("state", &Random::state_);
+  }
+
  private:
   uint64_t state_;
 };

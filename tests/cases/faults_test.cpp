@@ -1,0 +1,212 @@
+// What can befall a run from outside: killed, asked to stop, no room on the disk, a second run. Each leaves a state
+// that the run goes on from to the bits of one that nothing befell.
+#include <fcntl.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "tests/cases/every_stage.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+// A process of the command `scree`; what it says goes to a file.
+class Process {
+ public:
+  // `file_limit`: B, the most that one of its files may have; 0: no limit.
+  Process(const std::vector<std::string>& arguments, const fs::path& said, rlim_t file_limit = 0) : said_(said) {
+    std::vector<char*> argv{const_cast<char*>(SCREE_COMMAND)};
+    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+    argv.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ != 0) return;
+    const int file = open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    dup2(file, STDOUT_FILENO), dup2(file, STDERR_FILENO);
+    const rlimit limit{file_limit, file_limit};
+    if (file_limit > 0) setrlimit(RLIMIT_FSIZE, &limit);
+    execv(SCREE_COMMAND, argv.data());
+    _exit(127);
+  }
+  ~Process() {
+    if (pid_ > 0) send(SIGKILL), wait();
+  }
+  Process(const Process&) = delete;
+
+  void send(int signal) const { kill(pid_, signal); }
+  int wait() {  // exit code, or minus the signal
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  bool is_running() {
+    int status = 0;
+    if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) pid_ = -1;
+    return pid_ > 0;
+  }
+  std::string said() const { return text_of(said_); }
+
+ private:
+  fs::path said_;
+  pid_t pid_;
+};
+
+class Faults : public ::testing::Test {
+ protected:
+  Faults() : case_(write_every_stage(folder_.path())) {}
+
+  fs::path path(const std::string& name) const { return folder_.path() / name; }
+  std::vector<std::string> run_command(const fs::path& out, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> a{"run", case_, "--out", out.string()};
+    a.insert(a.end(), more.begin(), more.end());
+    return a;
+  }
+  int execute(const std::vector<std::string>& arguments, rlim_t file_limit = 0) {
+    Process p(arguments, path("said"), file_limit);
+    const int code = p.wait();
+    said_ = p.said();
+    return code;
+  }
+  // Results of a run that nothing befell.
+  const fs::path& undisturbed() {
+    static const TemporaryFolder folder;
+    static const fs::path out = [&] {
+      RunOptions options;
+      options.out = folder.path() / "undisturbed";
+      EXPECT_EQ(run_case(read_case(case_), options).status, RunStatus::done);
+      return options.out;
+    }();
+    return out;
+  }
+  void expect_resumes(const fs::path& out) {
+    ASSERT_EQ(execute({"resume", out.string()}), 0) << said_;
+    expect_undisturbed(out);
+  }
+  void expect_undisturbed(const fs::path& out) { expect_same_results(out, undisturbed()); }
+
+  TemporaryFolder folder_;
+  std::string case_, said_;
+};
+
+void wait_until(const auto& condition) {
+  for (int k = 0; k < 20000 && !condition(); ++k) std::this_thread::sleep_for(1ms);
+}
+
+TEST_F(Faults, KilledAtAnyMomentTheRunEndsTheSame) {
+  std::mt19937 random(std::random_device{}());
+  const unsigned seed = random();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  random.seed(seed);
+  const fs::path out = path("killed");
+  int kills = 0;
+  for (bool done = false; !done;) {
+    const std::string threads = std::to_string(1 + kills % 3);
+    Process p(run_command(out, {"--resume", "--checkpoint-every", "0.02", "--threads", threads}), path("said"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % (kills < 8 ? 300 : 100000)));
+    if (p.is_running()) p.send(SIGKILL), ++kills;
+    const int code = p.wait();
+    ASSERT_TRUE(code == 0 || code == -SIGKILL) << code << p.said();
+    done = code == 0;
+  }
+  RecordProperty("kills", kills);
+  expect_undisturbed(out);
+}
+
+// Stages that take no time heed a signal when the next one begins. On a busy machine a signal may come after the end.
+TEST_F(Faults, AskedToStopInAnyStageTheRunGoesOn) {
+  int signal = SIGTERM, stopped = 0;
+  for (const char* stage : {"'fill'", "'fall'", "'read'", "'pour'", "'settle'", "'open'", "'drain'"}) {
+    SCOPED_TRACE(stage);
+    const fs::path out = path(std::string("stopped_in_") + stage);
+    Process p(run_command(out, {"--checkpoint-every", "1000"}), path("said"));
+    wait_until([&] { return text_of(out / "run.log").find(std::string("stage ") + stage) != std::string::npos; });
+    p.send(signal);
+    if (const int code = p.wait(); code == 0)
+      continue;
+    else
+      ASSERT_EQ(code, 130) << p.said();
+    ++stopped;
+    EXPECT_NE(p.said().find("scree resume"), std::string::npos) << p.said();
+    EXPECT_EQ(read_summary(out)["status"], "interrupted");
+    expect_resumes(out);
+    signal = signal == SIGTERM ? SIGINT : SIGTERM;
+  }
+  EXPECT_GE(stopped, 4);
+}
+
+TEST_F(Faults, ASecondRunInTheFolderIsRefusedAndDoesNotDisturb) {
+  const fs::path out = path("shared");
+  Process first(run_command(out), path("first_said"));
+  wait_until([&] { return fs::exists(out / "mass_flow.csv"); });
+  first.send(SIGSTOP);  // so that it is surely still there
+  EXPECT_EQ(execute({"resume", out.string()}), 2);
+  EXPECT_NE(said_.find("another run (process "), std::string::npos) << said_;
+  EXPECT_EQ(execute(run_command(out, {"--resume"})), 2);
+  EXPECT_EQ(execute(run_command(out)), 2);
+  EXPECT_NE(said_.find("not empty"), std::string::npos) << said_;
+  first.send(SIGCONT);
+  EXPECT_EQ(first.wait(), 0) << first.said();
+  expect_undisturbed(out);
+}
+
+TEST_F(Faults, AFileBeyondTheLimitStopsTheRunWithAMessage) {
+  const fs::path out = path("limited");
+  EXPECT_EQ(execute(run_command(out), 100'000), 3);
+  EXPECT_NE(said_.find("cannot write the checkpoint"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("File too large"), std::string::npos) << said_;
+  expect_resumes(out);
+}
+
+TEST_F(Faults, AFullDiskStopsTheRunAndTheEarlierCheckpointIsGood) {
+  const fs::path disk = path("disk");
+  fs::create_directories(disk);
+  if (mount("scree_test", disk.c_str(), "tmpfs", 0, "size=900k") != 0)
+    GTEST_SKIP() << "not tried: a small file system cannot be mounted here";
+  const fs::path out = disk / "out";
+  const int code = execute(run_command(out, {"--checkpoint-every", "0.05", "--set", "checkpoint.keep=1000"}));
+  const std::string said = said_;
+  EXPECT_EQ(code, 3) << said;
+  EXPECT_NE(said.find("No space left on device"), std::string::npos) << said;
+  EXPECT_NE(said.find("scree resume"), std::string::npos) << said;
+  EXPECT_FALSE(checkpoints_in(out).empty());
+  EXPECT_EQ(mount("scree_test", disk.c_str(), "tmpfs", MS_REMOUNT, "size=500m"), 0);
+  expect_resumes(out);
+  EXPECT_EQ(umount(disk.c_str()), 0);
+}
+
+// A folder that cannot be written, in a way that holds for root, too.
+TEST_F(Faults, NoPlaceForCheckpointsStopsTheRunWithItsName) {
+  const fs::path out = path("blocked");
+  fs::create_directories(out);
+  std::ofstream(out / "checkpoints") << "a file where the folder should be";
+  EXPECT_EQ(execute(run_command(out, {"--resume"})), 3);
+  EXPECT_NE(said_.find((out / "checkpoints").string()), std::string::npos) << said_;
+  fs::remove(out / "checkpoints");
+  fs::remove(out / "summary.json");
+  ASSERT_EQ(execute(run_command(out, {"--resume"})), 0) << said_;
+  expect_undisturbed(out);
+}
+
+TEST_F(Faults, ResumeOfWhatIsNoRunIsBadInput) {
+  EXPECT_EQ(execute({"resume", path("nothing").string()}), 2);
+  EXPECT_NE(said_.find("case.toml"), std::string::npos) << said_;
+}
+
+TEST_F(Faults, NoUsableCheckpointIsBadInput) {
+  const fs::path out = path("spoilt");
+  ASSERT_EQ(execute(run_command(out)), 0) << said_;
+  for (const fs::path& p : checkpoints_in(out)) fs::resize_file(p, fs::file_size(p) / 2);
+  EXPECT_EQ(execute({"resume", out.string()}), 2);
+  EXPECT_NE(said_.find("truncated"), std::string::npos) << said_;
+}
+
+}  // namespace
+}  // namespace scree

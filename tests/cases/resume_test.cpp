@@ -1,0 +1,252 @@
+// A run that is resumed ends in the bits of one that was never interrupted, wherever its checkpoint was written.
+#include <map>
+
+#include "kernels/parallel.h"
+#include "runtime/run_folder.h"
+#include "tests/cases/every_stage.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kEveryLook{"checkpoint.interval=1e-9", "checkpoint.keep=1000"};
+
+// A finished run with a checkpoint of each of its moments.
+class FinishedRun {
+ public:
+  explicit FinishedRun(std::vector<std::string> overrides = {}, int threads = 2)
+      : threads_before_(thread_count()), file_(write_every_stage(folder_.path())), overrides_(overrides) {
+    overrides.insert(overrides.end(), kEveryLook.begin(), kEveryLook.end());
+    RunOptions options;
+    options.out = out(), options.threads = threads;
+    const RunResult r = run_case(read_case(file_, overrides), options);
+    EXPECT_EQ(r.status, RunStatus::done) << r.message;
+  }
+  ~FinishedRun() { set_thread_count(threads_before_); }
+
+  fs::path out() const { return folder_.path() / "whole"; }
+  fs::path fresh_folder() { return folder_.path() / ("resumed_" + std::to_string(resumed_++)); }
+  Case understood(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> overrides = overrides_;
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return read_case(file_, overrides);
+  }
+
+ private:
+  TemporaryFolder folder_;
+  int threads_before_, resumed_ = 0;
+  std::string file_;
+  std::vector<std::string> overrides_;
+};
+
+// The checkpoint in the middle of those of each stage, and the stages' ends: (what, path).
+std::map<std::string, fs::path> moments(const fs::path& out, const Case& c) {
+  std::map<uint64_t, std::vector<fs::path>> within, at_beginning;
+  for (const fs::path& path : checkpoints_in(out)) {
+    const RunState state = run_state_of(path);
+    (state.begun ? within : at_beginning)[state.stage].push_back(path);
+  }
+  std::map<std::string, fs::path> result;
+  for (const auto& [stage, paths] : within)
+    result[fmt::format("within {}, {}", stage, c.stages.at(stage).name)] = paths[paths.size() / 2];
+  for (const auto& [stage, paths] : at_beginning) result[fmt::format("before stage {}", stage)] = paths.front();
+  return result;
+}
+
+class Resume : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Resume, FromAnyStageEndsInTheSameBitsOnAnyNumberOfThreads) {
+  FinishedRun run({std::string("contact.precision=") + GetParam()});
+  const Case c = run.understood();
+  const auto all = moments(run.out(), c);
+  EXPECT_GE(all.size(), 8u);  // four stages take time; what falls on one step keeps the last state of it
+  int threads = 1;
+  for (const auto& [what, checkpoint] : all) {
+    SCOPED_TRACE(what);
+    const fs::path out = run.fresh_folder();
+    make_died_run(out, checkpoint);
+    const RunResult r = resume_in(out, c, threads);
+    threads = 4 - threads;  // 1 and 3
+    ASSERT_EQ(r.status, RunStatus::done) << r.message;
+    expect_same_results(out, run.out());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Precisions, Resume, ::testing::Values("mixed", "reference"));
+
+TEST(Checkpoint, WritingOneChangesNothing) {
+  FinishedRun run;
+  const fs::path out = run.fresh_folder();
+  RunOptions options;
+  options.out = out;
+  run_case(run.understood({"checkpoint.keep=0"}), options);
+  EXPECT_FALSE(fs::exists(out / "checkpoints"));
+  expect_same_results(out, run.out());
+}
+
+TEST(Checkpoint, TheLastOnesStayAndSummaryCountsThem) {
+  const TemporaryFolder folder;
+  const Case c = read_case(write_every_stage(folder.path()), {"checkpoint.keep=3"});
+  RunOptions options;
+  options.out = folder.path() / "out";
+  run_case(c, options);
+  const auto left = checkpoints_in(options.out);
+  EXPECT_EQ(left.size(), 3u);
+  EXPECT_EQ(run_state_of(left.front()).stage, c.stages.size());
+  const nlohmann::json s = read_summary(options.out);
+  EXPECT_EQ(s["checkpoints"]["written"], c.stages.size());
+  EXPECT_GT(s["checkpoints"]["seconds"], 0.0);
+}
+
+// ---- what is refused
+
+struct Told {
+  RunResult result;
+  std::string text;
+};
+
+Told resume_telling(const fs::path& out, const Case& c) {
+  Told told;
+  RunOptions options;
+  options.out = out, options.resume = true;
+  options.tell = [&](const std::string& line) { told.text += line + "\n"; };
+  told.result = run_case(c, options);
+  return told;
+}
+
+std::string refusal(const fs::path& out, const Case& c) {
+  try {
+    resume_in(out, c);
+  } catch (const RunRefused& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// Damages the newest checkpoint in some way.
+struct Fault {
+  const char* name;
+  void (*damage)(const fs::path& checkpoint);
+  const char* reason;
+};
+
+void flip_the_middle(const fs::path& path) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  const auto middle = static_cast<std::streamoff>(fs::file_size(path) / 2);
+  file.seekg(middle);
+  const char c = static_cast<char>(file.get() ^ 0x10);
+  file.seekp(middle);
+  file.put(c);
+}
+
+void change_the_format(const fs::path& path) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(20);
+  file.put(77);
+}
+
+const Fault kFaults[] = {
+    {"truncated", [](const fs::path& p) { fs::resize_file(p, fs::file_size(p) * 2 / 3); }, "truncated"},
+    {"empty", [](const fs::path& p) { fs::resize_file(p, 0); }, "not a checkpoint"},
+    {"bits flipped", flip_the_middle, "damaged"},
+    {"not HDF5", [](const fs::path& p) { std::ofstream(p) << std::string(9000, '#'); }, "not a checkpoint"},
+    {"other version", change_the_format, "another version"},
+    {"a folder of that name", [](const fs::path& p) { fs::remove(p), fs::create_directory(p); }, "cannot be read"},
+};
+
+TEST(Resume, RefusesADamagedCheckpointAndTakesTheOneBefore) {
+  FinishedRun run;
+  const auto all = checkpoints_in(run.out());
+  const fs::path newest = all[all.size() / 3], before = all[all.size() / 3 + 1];
+  for (const Fault& fault : kFaults) {
+    SCOPED_TRACE(fault.name);
+    const fs::path out = run.fresh_folder();
+    make_died_run(out, before), make_died_run(out, newest);
+    std::ofstream(out / "checkpoints" / "step_999999999999.h5.part") << "a killed writer's";
+    fault.damage(out / "checkpoints" / newest.filename());
+    const Told told = resume_telling(out, run.understood());
+    EXPECT_EQ(told.result.status, RunStatus::done) << told.result.message;
+    EXPECT_NE(told.text.find(fault.reason), std::string::npos) << told.text;
+    EXPECT_NE(told.text.find("resumed from " + before.filename().string()), std::string::npos) << told.text;
+    EXPECT_TRUE(fs::exists(out / "checkpoints" / (newest.filename().string() + ".refused")));
+    EXPECT_FALSE(fs::exists(out / "checkpoints" / "step_999999999999.h5.part"));
+    expect_same_results(out, run.out());
+  }
+}
+
+TEST(Resume, RefusesWhenNoCheckpointIsUsableAndTouchesNothing) {
+  FinishedRun run;
+  const fs::path out = run.fresh_folder();
+  fs::copy(run.out(), out);
+  make_died_run(out, checkpoints_in(run.out())[1]);
+  flip_the_middle(checkpoints_in(out)[0]);
+  const std::string why = refusal(out, run.understood());
+  EXPECT_NE(why.find("damaged"), std::string::npos) << why;
+  expect_same_results(out, run.out());
+}
+
+TEST(Resume, RefusesAnotherCaseAndNamesTheKey) {
+  FinishedRun run;
+  const fs::path out = run.fresh_folder();
+  make_died_run(out, checkpoints_in(run.out())[1]);
+  const std::string why = refusal(out, run.understood({"material.glass.poisson_ratio=0.23"}));
+  EXPECT_NE(why.find("'material.glass.poisson_ratio' was 0.22 and is now 0.23"), std::string::npos) << why;
+}
+
+TEST(Resume, RefusesOtherWallsUnderTheSameText) {
+  FinishedRun run;
+  const fs::path out = run.fresh_folder();
+  make_died_run(out, checkpoints_in(run.out())[1]);
+  Case c = run.understood();
+  c.solid.primitives.front().radius += 1e-12;
+  EXPECT_NE(refusal(out, c).find("walls"), std::string::npos);
+}
+
+TEST(Resume, TakesAChangeThatDoesNotMatter) {
+  FinishedRun run;
+  const fs::path out = run.fresh_folder();
+  make_died_run(out, checkpoints_in(run.out())[1]);
+  const RunResult r = resume_in(out, run.understood({"title=renamed", "checkpoint.keep=5"}));
+  EXPECT_EQ(r.status, RunStatus::done) << r.message;
+  expect_same_results(out, run.out());
+}
+
+TEST(Resume, RefusesResultsWithoutACheckpoint) {
+  FinishedRun run;
+  fs::remove_all(run.out() / "checkpoints");
+  EXPECT_NE(refusal(run.out(), run.understood()).find("no checkpoint"), std::string::npos);
+}
+
+TEST(Resume, OfARunThatDiedBeforeItsFirstCheckpointBeginsAtTheStart) {
+  FinishedRun run;
+  const fs::path out = run.fresh_folder();
+  const Told told = resume_telling(out, run.understood());
+  EXPECT_EQ(told.result.status, RunStatus::done) << told.result.message;
+  EXPECT_NE(told.text.find("begins at its start"), std::string::npos) << told.text;
+  Case c = run.understood();
+  expect_same_results(out, run.out());
+}
+
+// A failing run leaves its state to be looked at, and goes on from the last good one: to the same failure.
+TEST(Resume, OfAFailedRunStartsFromTheLastGoodState) {
+  const TemporaryFolder folder;
+  const Case c =
+      read_case(write_every_stage(folder.path()),
+                {"outlet.exit.remove_beyond=1", "domain.max=[0.02, 0.02, 0.05]", "domain.min=[-0.02, -0.02, -0.003]"});
+  RunOptions options;
+  options.out = folder.path() / "out";
+  const RunResult r = run_case(c, options);
+  ASSERT_EQ(r.status, RunStatus::failed);
+  EXPECT_NE(r.message.find("left the domain"), std::string::npos) << r.message;
+  int failed = 0;
+  for (const auto& entry : fs::directory_iterator(options.out / "checkpoints"))
+    failed += entry.path().filename().string().starts_with("failed_step_");
+  EXPECT_EQ(failed, 1);
+  const Told again = resume_telling(options.out, c);
+  EXPECT_EQ(again.result.message, r.message);
+  EXPECT_NE(again.text.find("resumed from step_"), std::string::npos) << again.text;
+}
+
+}  // namespace
+}  // namespace scree

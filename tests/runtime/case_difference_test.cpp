@@ -1,0 +1,59 @@
+// Which changes of a case make it another run, and how they are named.
+#include "runtime/case_difference.h"
+
+#include <gtest/gtest.h>
+
+#include "runtime/case_reader.h"
+#include "runtime/case_writer.h"
+#include "tests/runtime/case_text.h"
+
+namespace scree {
+namespace {
+
+using testing::Folder;
+using testing::kGoodCase;
+
+std::string difference_by(const std::vector<std::string>& overrides) {
+  const Folder folder;
+  const std::string path = folder.write("good.toml", kGoodCase);
+  return case_difference(read_case(path).understood, read_case(path, overrides).understood).value_or("");
+}
+
+TEST(CaseDifference, IsNoneForTheUnderstoodCaseReadBack) {
+  const Folder folder;
+  const Case c = read_case(folder.write("good.toml", kGoodCase));
+  const Case again = read_case(folder.write("case.toml", write_case(c)));
+  EXPECT_EQ(case_difference(c.understood, again.understood), std::nullopt);
+}
+
+TEST(CaseDifference, NamesTheKeyAndBothValues) {
+  const std::string text = difference_by({"stage.drain.max_time=0.75"});
+  EXPECT_NE(text.find("'stage.drain.max_time'"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.75"), std::string::npos) << text;
+  EXPECT_NE(difference_by({"seed=12"}).find("'seed' was 7 and is now 12"), std::string::npos);
+}
+
+TEST(CaseDifference, NamesTheFirstOfSeveral) {
+  const std::string text = difference_by({"stage.drain.max_time=0.75", "seed=12"});
+  EXPECT_NE(text.find("'seed'"), std::string::npos) << text;
+}
+
+TEST(CaseDifference, IsNoneForWhatDoesNotChangeTheCourse) {
+  EXPECT_EQ(difference_by({"title=another", "checkpoint.interval=3", "checkpoint.keep=9", "output.final_vtk=false"}),
+            "");
+}
+
+TEST(CaseDifference, IsNoneForAnotherSpellingOfANumber) {
+  EXPECT_EQ(case_difference("a = 3\n[b]\nc = 1\nd = 2\n", "a = 3.0  # default\n[b]\nd = 2\nc = 1\n"), std::nullopt);
+}
+
+TEST(CaseDifference, SeesKeysThatComeAndGo) {
+  EXPECT_NE(case_difference("a = 3\n", "a = 3\nb = 4\n")->find("'b' = 4 is new"), std::string::npos);
+  EXPECT_NE(case_difference("a = 3\nb = 4\n", "a = 3\n")->find("'b' = 4 is gone"), std::string::npos);
+  EXPECT_NE(
+      case_difference("[[stage]]\nkind = 'x'\n", "[[stage]]\nkind = 'x'\n[[stage]]\nkind = 'y'\n")->find("'stage'"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace scree
