@@ -18,12 +18,12 @@ struct Neighbourhood {
 template <class Real>
 class Search {
  public:
-  explicit Search(const SolidSearchTask<Real>& task) : t_(task) {}
+  explicit Search(const SolidSearchTask<Real>& task) : t_(task), buried_(task.count) {}
 
-  uint32_t run() {
+  SolidSearchOutcome run() {
     for (uint32_t first = t_.begin; first < t_.end;) {
       const uint32_t last = std::min(t_.end, t_.grid->ranges[t_.grid->linear(t_.grid->cell_of(position(first)))].end);
-      if (const uint32_t bad = search_cell(first, last); bad != t_.count) return bad;
+      if (const uint32_t bad = search_cell(first, last); bad != t_.count) return {bad, buried_, buried_in_};
       first = last;
     }
     // Particles with equally many neighbours share a block, so few slots are padding.
@@ -35,7 +35,7 @@ class Search {
       lay_block(k, end);
       k = end;
     }
-    return t_.count;
+    return {t_.count, buried_, buried_in_};
   }
 
  private:
@@ -70,14 +70,18 @@ class Search {
 
   bool search_particle(uint32_t k) {
     Neighbourhood n{k, static_cast<uint32_t>(found_.size()), {0, 0, 0}};
-    const double reach = static_cast<double>(t_.particles[k].radius) + t_.skin;
+    const double radius = static_cast<double>(t_.particles[k].radius), reach = radius + t_.skin;
     for (int kind = 0; kind < 3; ++kind)
-      for (const uint32_t primitive : cell_)
-        if (t_.tables->kind[primitive] == kind && distance((*t_.prepared)[primitive], position(k)) <= reach) {
+      for (const uint32_t primitive : cell_) {
+        if (t_.tables->kind[primitive] != kind) continue;
+        const double off = distance((*t_.prepared)[primitive], position(k));
+        if (off < t_.least_distance * radius && buried_ == t_.count) buried_ = k, buried_in_ = primitive;
+        if (off <= reach) {
           found_.push_back(t_.tables->row[primitive]);
           if (found_.size() - n.first > kMaxSlots) return false;
           ++n.counts[kind];
         }
+      }
     if (found_.size() > n.first) near_.push_back(n);
     return true;
   }
@@ -116,16 +120,17 @@ class Search {
   const SolidSearchTask<Real>& t_;
   std::vector<uint32_t> cell_, found_;
   std::vector<Neighbourhood> near_;
+  uint32_t buried_, buried_in_ = 0;
 };
 
 }  // namespace
 
 template <class Real>
-uint32_t search_solid(const SolidSearchTask<Real>& task) {
+SolidSearchOutcome search_solid(const SolidSearchTask<Real>& task) {
   return Search<Real>(task).run();
 }
 
-template uint32_t search_solid(const SolidSearchTask<float>&);
-template uint32_t search_solid(const SolidSearchTask<double>&);
+template SolidSearchOutcome search_solid(const SolidSearchTask<float>&);
+template SolidSearchOutcome search_solid(const SolidSearchTask<double>&);
 
 }  // namespace scree

@@ -23,13 +23,20 @@ struct SolidSearchTask {
   const uint32_t* old_index;
   const HistoryTable<Real>* history;
   ChunkContacts<Real>* contacts;
+  double least_distance;  // of the radius: a centre nearer than this to a surface is reported
 };
 
-// Returns the index of a particle with more than kMaxSlots primitives near it, or `count` if there is none.
-template <class Real>
-uint32_t search_solid(const SolidSearchTask<Real>& task);
+// Indices of particles, or `count` if there is none.
+struct SolidSearchOutcome {
+  uint32_t crowded;        // has more than kMaxSlots primitives near it
+  uint32_t buried;         // has its centre nearer than least_distance to
+  uint32_t buried_in = 0;  // this primitive
+};
 
-extern template uint32_t search_solid(const SolidSearchTask<float>&);
-extern template uint32_t search_solid(const SolidSearchTask<double>&);
+template <class Real>
+SolidSearchOutcome search_solid(const SolidSearchTask<Real>& task);
+
+extern template SolidSearchOutcome search_solid(const SolidSearchTask<float>&);
+extern template SolidSearchOutcome search_solid(const SolidSearchTask<double>&);
 
 }  // namespace scree

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <set>
 
+#include "kernels/particle.h"
 #include "runtime/case_physics.h"
 #include "runtime/case_sections.h"
 #include "runtime/case_size.h"
+#include "runtime/csv_table.h"
 
 namespace scree {
 namespace {
@@ -23,6 +26,8 @@ SizeDistribution one_diameter(double diameter) {
 
 constexpr Range kDiameter{1e-7, 10, "m", false};
 constexpr Range kFraction = positive(1, "");
+constexpr double kLeastShare = 0.01;  // of a distribution that its limits may leave: diameters are drawn until one fits
+constexpr double kMostRows = 1e8;     // of mass_flow.csv
 
 void read_list(TableReader& t, SizeDistribution& size) {
   size.diameters = t.numbers("diameters", kDiameter, 0);
@@ -50,6 +55,11 @@ void read_truncated(TableReader& t, SizeDistribution& size) {
   if (size.mean < size.min || size.mean > size.max) {
     t.fail(middle, fmt::format("{} is cut off, must be between min = {} and max = {} m", t.shown(middle),
                                t.shown("min"), t.shown("max")));
+  }
+  if (const double share = share_between_limits(size); !(share >= kLeastShare)) {
+    t.fail("deviation", fmt::format("{} leaves {:.2g} of the distribution between min = {} and max = {}, must be at "
+                                    "least {:g}: a smaller deviation, wider limits, or one diameter",
+                                    t.shown("deviation"), share, t.shown("min"), t.shown("max"), kLeastShare));
   }
 }
 
@@ -91,14 +101,16 @@ struct Touching {
 // Every kind touches every kind (itself, too) and every wall.
 std::vector<Touching> touching_materials(const Case& c) {
   std::vector<Touching> result;
+  std::set<std::pair<uint32_t, uint32_t>> surfaces;  // (material, wall); a lattice's fibres are all alike
+  for (const Primitive& p : c.solid.primitives) surfaces.insert({p.material, p.wall});
   for (size_t i = 0; i < c.kinds.size(); ++i) {
     for (size_t j = i; j < c.kinds.size(); ++j) {
       result.push_back({c.kinds[i].material, c.kinds[j].material,
                         fmt::format("particles '{}' and '{}'", c.kinds[i].name, c.kinds[j].name)});
     }
-    for (const Primitive& p : c.solid.primitives) {
-      result.push_back({c.kinds[i].material, p.material,
-                        fmt::format("particles '{}' and wall '{}'", c.kinds[i].name, c.solid.walls[p.wall])});
+    for (const auto& [material, wall] : surfaces) {
+      result.push_back({c.kinds[i].material, material,
+                        fmt::format("particles '{}' and wall '{}'", c.kinds[i].name, c.solid.walls[wall])});
     }
   }
   return result;
@@ -139,9 +151,10 @@ std::string path_beside(const TableReader& table, const std::string& key, const 
   const SourcePlace place = table.place(key);
   const fs::path folder =
       place.line > 0 ? fs::path(place.file).parent_path() : fs::path();  // an override: the working folder
-  const fs::path path = fs::absolute(folder / file).lexically_normal();
   std::error_code error;
+  const fs::path path = fs::absolute(folder / file, error).lexically_normal();
   if (!fs::is_regular_file(path, error)) table.fail(key, fmt::format("the file \"{}\" does not exist", path.string()));
+  require_room_for_csv(table.place(key), path.string());
   return path.string();
 }
 
@@ -180,6 +193,8 @@ void read_materials(TableReader& top, Case& c) {
 void read_particles(TableReader& top, Case& c) {
   std::vector<TableReader> tables = top.tables("particles");
   if (tables.empty()) top.one_of({"particles"});
+  if (tables.size() > kMaxKinds)
+    top.fail("particles", fmt::format("{} kinds of particles, must be at most {}", tables.size(), kMaxKinds));
   for (TableReader& t : tables) {
     ParticleKind kind;
     kind.name = new_name(t, "particle kind", names_of(c.kinds));
@@ -222,9 +237,9 @@ void read_time(TableReader& top, Case& c) {
   const double limit = c.time.allow_large_step ? 10 : 0.5;
   if (t.at_most_one_of({"step", "rayleigh_fraction"}) != "step") {
     c.time.rayleigh_fraction =
-        t.number("rayleigh_fraction", positive(limit, "Rayleigh times"), c.time.rayleigh_fraction);
+        t.number("rayleigh_fraction", between(1e-4, limit, "Rayleigh times"), c.time.rayleigh_fraction);
   } else {
-    c.time.step = t.number("step", positive(1, "s"));
+    c.time.step = t.number("step", between(1e-15, 1, "s"));
     if (c.time.step > limit * rayleigh) {
       t.fail("step", fmt::format("{} s is {:.3g} of the smallest Rayleigh time, must be at most {} of it ({:.4g} s); "
                                  "allow_large_step = true allows more",
@@ -234,8 +249,20 @@ void read_time(TableReader& top, Case& c) {
   t.finish();
 }
 
-Case read_case(const std::string& path, const std::vector<std::string>& overrides) {
-  CaseNode tree = load_case_tree(path, overrides);
+namespace {
+
+// A row for every interval of the longest run, all of them kept for the steady flow.
+void check_rows(TableReader top, const Case& c) {
+  const double rows = longest_time(c) / c.output.interval;
+  if (rows <= kMostRows) return;
+  TableReader output = top.table("output");
+  output.fail("interval",
+              fmt::format("{} s makes {:.3g} rows of mass_flow.csv in the stages' {:.4g} s, must be at most "
+                          "{:g}",
+                          output.shown("interval"), rows, longest_time(c), kMostRows));
+}
+
+Case case_from(CaseNode tree, const std::string& path) {
   TableReader top(tree, "");
   Case c;
   c.source = path;
@@ -249,9 +276,20 @@ Case read_case(const std::string& path, const std::vector<std::string>& override
   read_pairs(top, c);
   read_time(top, c);
   read_stages(top, c);
+  check_rows(top, c);
   top.finish();
   c.understood = emit_toml(tree);
   return c;
+}
+
+}  // namespace
+
+Case read_case(const std::string& path, const std::vector<std::string>& overrides) {
+  return case_from(load_case_tree(path, overrides), path);
+}
+
+Case read_case_text(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+  return case_from(load_case_tree(text, path, overrides), path);
 }
 
 }  // namespace scree

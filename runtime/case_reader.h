@@ -14,4 +14,7 @@ namespace scree {
 // and used, or a CaseError says where it stands and what is allowed.
 Case read_case(const std::string& path, const std::vector<std::string>& overrides = {});
 
+// The same from text; `path` is where it would stand: for messages, and files that it names are looked up beside it.
+Case read_case_text(const std::string& text, const std::string& path, const std::vector<std::string>& overrides = {});
+
 }  // namespace scree

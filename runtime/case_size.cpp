@@ -53,9 +53,15 @@ double largest_diameter(const SizeDistribution& size) {
 double mean_particle_volume(const SizeDistribution& size) {
   if (size.kind == SizeDistribution::Kind::list) return mean_volume_of_list(size);
   constexpr int kSteps = 2000;  // midpoint rule: the truncated densities are smooth
+  constexpr double kReach =
+      8;  // deviations: beyond them nothing is left, and a narrow peak must not fall between steps
+  const bool normal = size.kind == SizeDistribution::Kind::normal;
+  const double spread = std::exp(kReach * size.deviation);
+  const double low = std::max(size.min, normal ? size.mean - kReach * size.deviation : size.mean / spread);
+  const double high = std::min(size.max, normal ? size.mean + kReach * size.deviation : size.mean * spread);
   double number = 0, volume = 0;
   for (int i = 0; i < kSteps; ++i) {
-    const double d = size.min + (size.max - size.min) * (i + 0.5) / kSteps;
+    const double d = low + (high - low) * (i + 0.5) / kSteps;
     number += number_density(size, d);
     volume += number_density(size, d) * sphere_volume(d);
   }
@@ -80,6 +86,16 @@ Bounds bounds_of(const Region& r) {
   }
   const Vec3 half{std::max(r.bottom_x, r.top_x) / 2, std::max(r.bottom_y, r.top_y) / 2, 0};
   return {r.base - half, r.base + half + Vec3{0, 0, r.height}};
+}
+
+double share_between_limits(const SizeDistribution& size) {
+  if (size.kind == SizeDistribution::Kind::list) return 1;
+  const bool normal = size.kind == SizeDistribution::Kind::normal;
+  const auto below = [&](double d) {
+    const double deviations = normal ? (d - size.mean) / size.deviation : std::log(d / size.mean) / size.deviation;
+    return 0.5 * std::erfc(-deviations / std::numbers::sqrt2);
+  };
+  return below(size.max) - below(size.min);
 }
 
 double particles_per_mass(const Case& c, const Mixture& mixture) {
@@ -109,6 +125,17 @@ double expected_particles(const Case& c) {
   double sum = 0;
   for (const Stage& stage : c.stages) sum += expected_particles(c, stage.action);
   return sum;
+}
+
+double longest_time(const Case& c) {
+  double t = 0;
+  for (const Stage& stage : c.stages) {
+    if (const auto* s = std::get_if<SettleStage>(&stage.action)) t += s->max_time;
+    if (const auto* s = std::get_if<DrainStage>(&stage.action)) t += s->max_time;
+    if (const auto* s = std::get_if<PourStage>(&stage.action))
+      t += (s->mass > 0 ? s->mass : static_cast<double>(s->count) / particles_per_mass(c, s->mixture)) / s->rate;
+  }
+  return t;
 }
 
 }  // namespace scree

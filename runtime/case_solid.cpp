@@ -3,16 +3,20 @@
 #include <stdexcept>
 
 #include "geometry/bounds.h"
+#include "geometry/closest_point.h"
 #include "geometry/octet_lattice.h"
 #include "geometry/porosity.h"
 #include "geometry/walls.h"
 #include "runtime/case_sections.h"
 #include "runtime/csv_table.h"
+#include "runtime/memory.h"
 
 namespace scree {
 namespace {
 
 constexpr Range kFibreDiameter{1e-7, 10, "m", false};
+constexpr double kShortestFibre = 1e-9;  // m, of the axis: what is shorter has no direction
+constexpr double kFibresPerCell = 25;    // of an Octet lattice, about: a cell's own and its share of its neighbours'
 
 // What a generator of geometry/ refuses becomes an error of the table that described it.
 template <class Make>
@@ -34,16 +38,21 @@ SurfaceLabel new_wall(TableReader& t, Case& c, const char* default_name) {
   return {t.index("material", "material", names_of(c.materials)), static_cast<uint32_t>(c.solid.walls.size() - 1)};
 }
 
-void add(Case& c, const Primitives& primitives) {
+// A primitive that the engine could not prepare is an error of the table now, not of the run later.
+void add(const TableReader& t, const std::string& key, Case& c, const Primitives& primitives) {
+  for (const Primitive& p : primitives) generated(t, key, [&] { return prepared(p); });
   c.solid.primitives.insert(c.solid.primitives.end(), primitives.begin(), primitives.end());
 }
 
 void read_lattice(TableReader t, Case& c) {
   t.choice<int>("kind", {{"octet", 0}}, "octet");
   const SurfaceLabel label = new_wall(t, c, "lattice");
-  const double cell_size = t.number("cell_size", positive(10, "m"));
+  const double cell_size = t.number("cell_size", between(1e-7, 10, "m"));
   const std::vector<double> cells = t.whole_numbers("cells", between(1, 1e4, "cells"), 3);
   const Vec3 origin = t.vec3("origin", kPosition);
+  const double fibres = kFibresPerCell * cells[0] * cells[1] * cells[2];
+  require_memory(t.place("cells"), fmt::format("key 'lattice.cells': the lattice's {:.3g} fibres need", fibres),
+                 memory_of_primitives(fibres));
   const OctetLattice lattice = generated(t, "cells", [&] {
     return octet_lattice(cell_size, {int(cells[0]), int(cells[1]), int(cells[2])}, origin);
   });
@@ -63,7 +72,8 @@ void read_lattice(TableReader t, Case& c) {
   c.fibres.section = section_of(lattice);
   c.fibres.porosity = porosity(lattice, c.fibres.diameter);
   c.fibres.volume = (1 - c.fibres.porosity) * volume_of(c.fibres.section);
-  add(c, generated(t, "fibre_diameter", [&] { return fibre_primitives(lattice, c.fibres.diameter, label); }));
+  add(t, "fibre_diameter", c,
+      generated(t, "fibre_diameter", [&] { return fibre_primitives(lattice, c.fibres.diameter, label); }));
 }
 
 struct Fibre {
@@ -80,15 +90,12 @@ std::vector<Fibre> read_fibre_file(const std::string& path) {
   std::vector<Fibre> fibres;
   while (table.next()) {
     double v[6];
-    for (int i = 0; i < 6; ++i) v[i] = table.number(column[i]);
+    for (int i = 0; i < 6; ++i) v[i] = table.number(column[i], kPosition);
     Fibre& fibre = fibres.emplace_back(Fibre{{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}}, 0});
-    if (norm(fibre.axis.b - fibre.axis.a) == 0) table.fail(column[0], "the fibre has no length, its ends must differ");
+    if (norm(fibre.axis.b - fibre.axis.a) < kShortestFibre)
+      table.fail(column[0], fmt::format("the fibre has no length, its ends must be {:g} m apart", kShortestFibre));
     if (diameter < 0) continue;
-    fibre.diameter = table.number(diameter);
-    if (fibre.diameter < kFibreDiameter.min || fibre.diameter > kFibreDiameter.max) {
-      table.fail(diameter,
-                 fmt::format("{} is out of range, must be {}", table.text(diameter), to_string(kFibreDiameter)));
-    }
+    fibre.diameter = table.number(diameter, kFibreDiameter);
   }
   if (fibres.empty()) throw CaseError({path, table.line(), 1}, "the file has no fibres below its header");
   return fibres;
@@ -98,9 +105,9 @@ std::vector<Fibre> read_segments(TableReader& t) {
   std::vector<Fibre> fibres;
   for (const auto& v : t.rows("segments", kPosition, 6)) {
     fibres.push_back({{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}}, 0});
-    if (norm(fibres.back().axis.b - fibres.back().axis.a) > 0) continue;
-    t.fail("segments", fmt::format("segment {} from [{}, {}, {}] to itself has no length, its ends must differ",
-                                   fibres.size(), v[0], v[1], v[2]));
+    if (norm(fibres.back().axis.b - fibres.back().axis.a) >= kShortestFibre) continue;
+    t.fail("segments", fmt::format("segment {} from [{}, {}, {}] has no length, its ends must be {:g} m apart",
+                                   fibres.size(), v[0], v[1], v[2], kShortestFibre));
   }
   return fibres;
 }
@@ -122,7 +129,7 @@ void read_fibres(TableReader& t, Case& c) {
   const double diameter = all_given ? 0 : t.number("diameter", kFibreDiameter);
   t.finish();
   for (const Fibre& fibre : fibres) {
-    add(c, generated(t, "diameter", [&] {
+    add(t, "diameter", c, generated(t, "diameter", [&] {
           return fibre_network(std::span(&fibre.axis, 1), fibre.diameter > 0 ? fibre.diameter : diameter, label);
         }));
   }
@@ -179,9 +186,11 @@ Primitives read_rectangle(TableReader& t, const SurfaceLabel& label) {
                               "along the other two, m",
                               t.shown("max"), t.shown("min")));
   }
-  if (d.x == 0) return rectangle(min, {0, d.y, 0}, {0, 0, d.z}, label);
-  if (d.y == 0) return rectangle(min, {d.x, 0, 0}, {0, 0, d.z}, label);
-  return rectangle(min, {d.x, 0, 0}, {0, d.y, 0}, label);
+  return generated(t, "max", [&] {
+    if (d.x == 0) return rectangle(min, {0, d.y, 0}, {0, 0, d.z}, label);
+    if (d.y == 0) return rectangle(min, {d.x, 0, 0}, {0, 0, d.z}, label);
+    return rectangle(min, {d.x, 0, 0}, {0, d.y, 0}, label);
+  });
 }
 
 Primitives read_box_wall(TableReader& t, const SurfaceLabel& label) {
@@ -265,7 +274,7 @@ void read_wall(TableReader& t, Case& c, std::vector<PendingPlane>& planes) {
   if (read) {
     Primitives primitives = read(t, label);
     for (Primitive& p : primitives) p.velocity = velocity;
-    add(c, primitives);
+    add(t, "kind", c, primitives);
   } else {
     planes.push_back({t, t.vec3("point", kPosition), t.direction("normal"), velocity, label});
   }
@@ -276,7 +285,7 @@ void add_plane(const PendingPlane& pending, Case& c) {
   Primitives primitives =
       generated(pending.table, "point", [&] { return plane(pending.point, pending.normal, c.domain, pending.label); });
   for (Primitive& p : primitives) p.velocity = pending.velocity;
-  add(c, primitives);
+  add(pending.table, "point", c, primitives);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace scree {
 namespace {
 
-constexpr double kMostParticles = 1e11;
+constexpr double kMostParticles = 4e9;  // a domain counts them in 32 bits
 const Range kMass = positive(1e9, "kg");
 const Range kCount = between(1, kMostParticles, "particles");
 
@@ -189,7 +189,7 @@ StageAction read_drain(TableReader& t, const Case& c, Progress& progress) {
 
 void check_number(const TableReader& t, const Case& c, const StageAction& action, Progress& progress) {
   progress.expected += expected_particles(c, action);
-  if (progress.expected <= kMostParticles) return;
+  if (progress.expected <= kMostParticles) return;  // false for a number that is none, too
   const std::string key = t.shown("mass") != "not given" ? "mass" : t.shown("count") != "not given" ? "count" : "kind";
   t.fail(key, fmt::format("{} makes {:.3g} particles in all, must be at most {:g}; are lengths in m and masses in kg?",
                           t.shown(key), progress.expected, kMostParticles));

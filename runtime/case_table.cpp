@@ -7,6 +7,8 @@
 namespace scree {
 namespace {
 
+constexpr size_t kMostTables = 10000;  // of one kind: each is compared with all before it, and a person wrote them
+
 std::string shortened(std::string text) { return text.size() <= 80 ? text : text.substr(0, 77) + "..."; }
 
 CaseNode node_of(double value) { return {value, {}, {}}; }
@@ -19,6 +21,10 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 }
 
 }  // namespace
+
+bool holds(const Range& range, double value) {
+  return std::isfinite(value) && value <= range.max && (range.above_min ? value > range.min : value >= range.min);
+}
 
 std::string to_string(const Range& range) {
   const std::string unit = *range.unit ? fmt::format(" {}", range.unit) : "";
@@ -89,9 +95,7 @@ double TableReader::to_number(const std::string& key, const CaseNode& node, cons
   const auto* real = std::get_if<double>(&node.value);
   if (!integer && !real) fail_type(key, node, fmt::format("a number, {}", to_string(range)));
   const double value = real ? *real : static_cast<double>(*integer);
-  const bool inside =
-      std::isfinite(value) && value <= range.max && (range.above_min ? value > range.min : value >= range.min);
-  if (inside) return value;
+  if (holds(range, value)) return value;
   throw CaseError(node.place, fmt::format("key '{}': {} is out of range, must be {}", full_key(key), inline_toml(node),
                                           to_string(range)));
 }
@@ -273,6 +277,9 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
     if (node->array() && node->array()->empty()) fail(key, "[] is empty, leave the key out or give at least one");
     fail_type(key, *node, fmt::format("tables, each under [[{}]]", key));
   }
+  if (node->array()->size() > kMostTables)
+    fail(key, fmt::format("{} tables, must be at most {}; many fibres go into a CSV file: [[fibres]] file = \"...\"",
+                          node->array()->size(), kMostTables));
   std::vector<TableReader> result;
   for (CaseNode& element : *node->array()) {
     const std::string label = element_label(key, element);

@@ -19,10 +19,11 @@ struct Range {
 inline constexpr Range between(double min, double max, const char* unit) { return {min, max, unit, false}; }
 inline constexpr Range positive(double max, const char* unit) { return {0, max, unit, true}; }
 inline constexpr Range kPosition = between(-1e3, 1e3, "m");
-inline constexpr Range kLength = positive(1e3, "m");
+inline constexpr Range kLength = between(1e-9, 1e3, "m");
 inline constexpr Range kDuration = positive(1e6, "s");
 inline constexpr Range kVelocity = between(-1e3, 1e3, "m/s");
 
+bool holds(const Range& range, double value);  // false for NaN
 std::string to_string(const Range& range);
 
 template <class E>

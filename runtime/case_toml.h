@@ -55,6 +55,8 @@ CaseNode load_case_tree(const std::string& path, const std::vector<std::string>&
 
 // One file's text alone; `file` names it in errors. Throws CaseError.
 CaseNode parse_case_text(const std::string& text, const std::string& file);
+// The same with the text of the file at hand.
+CaseNode load_case_tree(const std::string& text, const std::string& path, const std::vector<std::string>& overrides);
 
 // The value as TOML in one line.
 std::string inline_toml(const CaseNode& node);

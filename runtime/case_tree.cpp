@@ -134,9 +134,12 @@ std::string emit_toml(const CaseNode& tree) {
 }
 
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr size_t kLongestWord = 100;  // a longer one is no slip of the pen, and distances cost its length squared
+  if (word.size() > kLongestWord) return std::nullopt;
   std::optional<std::string> best;
   size_t least = std::max<size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
+    if (candidate.size() > kLongestWord) continue;
     const size_t distance = edit_distance(word, candidate);
     if (distance < least && distance < std::max(word.size(), candidate.size())) {
       least = distance;

@@ -5,12 +5,10 @@
 namespace scree {
 namespace {
 
-constexpr double kLargestRadius = 5;  // m: more is a slip of the unit
+constexpr Range kRadius = between(5e-8, 5, "m");  // beyond it is a slip of the unit
+const std::vector<std::string> kColumns{"x", "y", "z", "radius", "r", "vx", "vy", "vz", "kind"};
 
-}  // namespace
-
-std::vector<CsvParticle> read_particles_csv(const std::string& path) {
-  CsvTable table(path, {"x", "y", "z", "radius", "r", "vx", "vy", "vz", "kind"});
+std::vector<CsvParticle> read_rows(CsvTable& table, const std::string& path) {
   const int x = table.require("x"), y = table.require("y"), z = table.require("z");
   const int short_radius = table.column("r"), kind = table.column("kind");
   const int radius = short_radius >= 0 ? short_radius : table.require("radius");
@@ -24,17 +22,25 @@ std::vector<CsvParticle> read_particles_csv(const std::string& path) {
   while (table.next()) {
     CsvParticle& p = particles.emplace_back();
     p.line = table.line();
-    p.position = {table.number(x), table.number(y), table.number(z)};
-    p.radius = table.number(radius);
-    if (!(p.radius > 0 && p.radius <= kLargestRadius)) {
-      table.fail(radius, fmt::format("{} is out of range, must be greater than 0 and at most {} m", table.text(radius),
-                                     kLargestRadius));
-    }
-    if (moving) p.velocity = {table.number(vx), table.number(vy), table.number(vz)};
+    p.position = {table.number(x, kPosition), table.number(y, kPosition), table.number(z, kPosition)};
+    p.radius = table.number(radius, kRadius);
+    if (moving) p.velocity = {table.number(vx, kVelocity), table.number(vy, kVelocity), table.number(vz, kVelocity)};
     if (kind >= 0) p.kind = table.text(kind);
   }
   if (particles.empty()) throw CaseError({path, table.line(), 1}, "the file has no particles below its header");
   return particles;
+}
+
+}  // namespace
+
+std::vector<CsvParticle> read_particles_csv(const std::string& path) {
+  CsvTable table(path, kColumns);
+  return read_rows(table, path);
+}
+
+std::vector<CsvParticle> read_particles_csv(const std::string& path, std::string text) {
+  CsvTable table(path, std::move(text), kColumns);
+  return read_rows(table, path);
 }
 
 }  // namespace scree

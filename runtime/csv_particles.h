@@ -23,5 +23,6 @@ struct CsvParticle {
 
 // Throws CaseError with file, line and column.
 std::vector<CsvParticle> read_particles_csv(const std::string& path);
+std::vector<CsvParticle> read_particles_csv(const std::string& path, std::string text);  // with its text at hand
 
 }  // namespace scree

@@ -5,12 +5,17 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "runtime/case_toml.h"
+#include "runtime/memory.h"
 
 namespace scree {
 namespace {
+
+// A line of text becomes at most so many times its size: the text, the rows as numbers, and a vector that grows.
+constexpr double kMemoryPerByte = 6;
 
 std::string_view trimmed(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r");
@@ -23,6 +28,7 @@ std::string read_whole(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream || !std::filesystem::is_regular_file(path, error))
     throw CaseError({path, 0, 0}, "the file cannot be read");
+  require_room_for_csv({path, 0, 0}, path);
   std::ostringstream text;
   text << stream.rdbuf();
   return std::move(text).str();
@@ -30,8 +36,17 @@ std::string read_whole(const std::string& path) {
 
 }  // namespace
 
+void require_room_for_csv(const SourcePlace& place, const std::string& path) {
+  std::error_code error;
+  const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
+  require_memory(place, fmt::format("reading {} of CSV needs", bytes_text(bytes)), kMemoryPerByte * bytes);
+}
+
 CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& known)
-    : path_(path), text_(read_whole(path)) {
+    : CsvTable(path, read_whole(path), known) {}
+
+CsvTable::CsvTable(const std::string& path, std::string text, const std::vector<std::string>& known)
+    : path_(path), text_(std::move(text)) {
   if (!next_line(row_))
     throw CaseError({path_, 1, 1}, fmt::format("the file is empty, must begin with a line of column names ({})",
                                                fmt::join(known, ", ")));
@@ -73,7 +88,7 @@ bool CsvTable::next() {
   return true;
 }
 
-double CsvTable::number(int column) const {
+double CsvTable::number(int column, const Range& range) const {
   const std::string_view field = text(column);
   const char* const begin = field.data() + (field.starts_with('+') ? 1 : 0);
   const char* const end = field.data() + field.size();
@@ -81,6 +96,7 @@ double CsvTable::number(int column) const {
   const auto [stop, error] = std::from_chars(begin, end, value);
   if (error != std::errc() || stop != end) fail(column, fmt::format("'{}' is not a number", field));
   if (!std::isfinite(value)) fail(column, fmt::format("'{}' is not a finite number", field));
+  if (!holds(range, value)) fail(column, fmt::format("{} is out of range, must be {}", field, to_string(range)));
   return value;
 }
 
@@ -97,6 +113,8 @@ bool CsvTable::next_line(std::string_view& line) {
     const size_t end = std::min(text_.find('\n', position_), text_.size());
     line = std::string_view(text_).substr(position_, end - position_);
     position_ = end + 1;
+    if (line_ == std::numeric_limits<int>::max())
+      throw CaseError({path_, line_, 1}, fmt::format("the file has more than {} lines", line_));
     ++line_;
     const std::string_view content = trimmed(line);
     if (!content.empty() && content[0] != '#') return true;

@@ -6,6 +6,7 @@
 #include "kernels/parallel.h"
 #include "runtime/case_physics.h"
 #include "runtime/case_size.h"
+#include "runtime/memory.h"
 #include "runtime/placement.h"
 #include "runtime/progress.h"
 #include "runtime/simulation.h"
@@ -14,11 +15,6 @@
 namespace scree {
 
 namespace {
-
-// Bytes a particle of the settled 400 um bed, lists and sort buffers included, at the peak of a rebuild: see
-// bench/README.md.
-constexpr double kBytesPerParticle = 420;
-constexpr double kFixedBytes = 40e6;
 
 std::string stage_text(const Case& c, const Stage& stage) {
   struct Text {
@@ -49,18 +45,6 @@ std::string stage_text(const Case& c, const Stage& stage) {
   };
   const std::string text = std::visit(Text{c}, stage.action);
   return stage.name.empty() || text.starts_with(stage.name) ? text : stage.name + " - " + text;
-}
-
-// Physical time at most, from the stages' longest times and pours.
-double longest_time(const Case& c) {
-  double t = 0;
-  for (const Stage& stage : c.stages) {
-    if (const auto* s = std::get_if<SettleStage>(&stage.action)) t += s->max_time;
-    if (const auto* s = std::get_if<DrainStage>(&stage.action)) t += s->max_time;
-    if (const auto* s = std::get_if<PourStage>(&stage.action))
-      t += (s->mass > 0 ? s->mass : static_cast<double>(s->count) / particles_per_mass(c, s->mixture)) / s->rate;
-  }
-  return t;
 }
 
 }  // namespace
@@ -119,9 +103,8 @@ std::string describe_case(const Case& c) {
     line(k == 0 ? "stages" : "", fmt::format("{}. {}", k + 1, stage_text(c, c.stages[k])));
   if (const double t = longest_time(c); t > 0)
     line("physical time", fmt::format("at most {:.4g} s = {:.0f} steps", t, t / s.step));
-  line("memory",
-       fmt::format("about {:.2f} GB ({:.0f} B a particle and {:.0f} MB)",
-                   (kFixedBytes + kBytesPerParticle * particles) / 1e9, kBytesPerParticle, kFixedBytes / 1e6));
+  const AvailableMemory available = available_memory();
+  line("memory", fmt::format("about {}, of {} available", bytes_text(memory_needed(c)), bytes_text(available.bytes)));
   return text;
 }
 

@@ -4,8 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "kernels/parallel.h"
 #include "kernels/periodic.h"
 #include "runtime/case_physics.h"
@@ -15,10 +13,7 @@ namespace scree {
 
 namespace {
 
-constexpr double kMaxOverlapShare =
-    0.5;                                 // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted
 constexpr double kWayMargin = 1 + 1e-6;  // speeds are compared in single precision
-constexpr double kMaxTravelShare = 0.2;  // of the smallest radius, in one step
 
 uint64_t mix(uint64_t h) {  // splitmix64's finaliser
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -33,6 +28,7 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
     : box_(c.domain),
       solid_(c.solid),
       brute_force_solid_(options.brute_force_solid),
+      check_interval_(options.list_check_interval),
       fixed_skin_(options.skin > 0 ? options.skin : c.neighbour.skin),
       kinds_(static_cast<uint32_t>(c.kinds.size())) {
   for (int a = 0; a < 3; ++a) periodic_[a] = c.periodic[a];
@@ -143,6 +139,7 @@ void Domain<Real>::step() {
     all.too_fast |= o.too_fast;
   }
   max_speed_ = all.max_speed;
+  max_overlap_ = std::max(2 * all.max_pair_overlap, all.max_solid_overlap);
   const double way = kWayMargin * max_speed_ * settings_.dt;
   travel_ += way;
   near_travel_ += way;
@@ -150,6 +147,7 @@ void Domain<Real>::step() {
   counters_.particle_steps += count_;
   if (all.too_fast || all.max_pair_overlap > kMaxOverlapShare || all.max_solid_overlap > kMaxOverlapShare)
     fail_step(all);
+  if (check_interval_ > 0 && counters_.steps % check_interval_ == 0) check_lists();
 }
 
 template <class Real>
@@ -163,34 +161,6 @@ void Domain<Real>::advance_chunks() {
   now_.swap(next_);
 }
 
-template <class Real>
-void Domain<Real>::fail_step(const ChunkOutcome& outcome) const {
-  if (!outcome.too_fast)
-    throw RunError(
-        fmt::format("at t = {:.6g} s an overlap reached {:.3g} of {} (limit {}): use a smaller [time] step or a larger "
-                    "youngs_modulus",
-                    time(), std::max(outcome.max_pair_overlap, outcome.max_solid_overlap),
-                    outcome.max_pair_overlap > kMaxOverlapShare ? "the sum of two particles' radii"
-                                                                : "a particle's radius at a wall or fibre",
-                    kMaxOverlapShare));
-  for (size_t k = 0; k < count_; ++k) {
-    const ParticleState s = state(k);
-    if (norm(s.velocity) <= settings_.speed_limit) continue;
-    if (std::isnan(norm(s.velocity)))
-      throw RunError(
-          fmt::format("the velocity of particle {} is not a number at t = {:.6g} s, after a largest overlap of {:.3g} "
-                      "radii: use a smaller [time] step (now {:.4g} s)",
-                      s.id, time(), outcome.max_pair_overlap, settings_.dt));
-    throw RunError(
-        fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s at t = {:.6g} s, more than {:.4g} "
-                    "m/s = {} radii in a step: "
-                    "use a smaller [time] step (now {:.4g} s)",
-                    s.id, s.position.x, s.position.y, s.position.z, norm(s.velocity), time(), settings_.speed_limit,
-                    kMaxTravelShare, settings_.dt));
-  }
-  throw RunError(fmt::format("a particle was too fast at t = {:.6g} s", time()));
-}
-
 // ---- what others read
 
 template <class Real>
@@ -199,6 +169,15 @@ size_t Domain<Real>::bytes() const {
                  old_index_.capacity() * 4;
   for (const auto& c : contacts_) total += c.bytes();
   return total;
+}
+
+template <class Real>
+size_t Domain<Real>::step_traffic() const {
+  size_t total = size_t{count_} * sizeof(Particle<Real>);
+  for (const auto& c : contacts_)
+    total += c.blocks.size() * sizeof(c.blocks[0]) + c.solid_blocks.size() * sizeof(c.solid_blocks[0]) +
+             c.slots.size() * sizeof(c.slots[0]);
+  return 2 * total;  // once read, once written
 }
 
 template <class Real>

@@ -17,6 +17,10 @@ namespace scree {
 inline constexpr uint32_t kChunk =
     2048;  // particles in a chunk, at most: its records and force rows fit a core's cache
 
+inline constexpr double kMaxOverlapShare =
+    0.5;  // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted
+inline constexpr double kMaxTravelShare = 0.2;  // of the smallest radius, in one step
+
 template <class Real>
 class Domain final : public Engine {
  public:
@@ -31,10 +35,12 @@ class Domain final : public Engine {
   double time() const override { return static_cast<double>(counters_.steps) * settings_.dt; }
   double dt() const override { return settings_.dt; }
   double max_speed() const override { return max_speed_; }
+  double max_overlap() const override { return max_overlap_; }
   double skin() const override { return skin_; }
   std::string isa() const override { return isa_; }
   const EngineCounters& counters() const override { return counters_; }
   size_t bytes() const override;
+  size_t step_traffic() const override;
   void save(StateWriter& out) const override;
   void load(StateReader& in) override;
   double sum(const std::function<double(const ParticleState&)>& f) const override;
@@ -65,7 +71,15 @@ class Domain final : public Engine {
   void search_solids();
 
   void advance_chunks();
+
+  // runtime/domain_watch.cpp
   [[noreturn]] void fail_step(const ChunkOutcome& outcome) const;
+  [[noreturn]] void fail_overlap(bool pair) const;
+  [[noreturn]] void fail_crowded(uint32_t particle) const;
+  [[noreturn]] void fail_buried(uint32_t particle, uint32_t primitive) const;
+  void check_lists() const;
+  std::string wall_named(uint32_t identity) const;
+  std::string wall_of_image(uint32_t primitive) const;
 
   // The state beside the particles themselves. What is not here follows from the case, or is worked out anew by each
   // rebuild; histories only wait in history_ while the lists are not valid.
@@ -84,6 +98,7 @@ class Domain final : public Engine {
   Solid solid_;                           // what is left of the case's after walls were opened
   std::vector<uint32_t> solid_identity_;  // index in the case's list of each primitive that is left
   bool brute_force_solid_;
+  uint64_t check_interval_;
   double fixed_skin_;
   uint32_t kinds_;
   StepSettings settings_{};
@@ -109,7 +124,7 @@ class Domain final : public Engine {
   double skin_ = 0, inner_ = 0;
   double travel_ = 0;       // m, bound on any particle's way since the last rebuild
   double near_travel_ = 0;  // the same since near pairs were last checked
-  double max_speed_ = 0;
+  double max_speed_ = 0, max_overlap_ = 0;
   bool lists_valid_ = false;
   EngineCounters counters_;
 };

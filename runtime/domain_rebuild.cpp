@@ -112,7 +112,8 @@ void Domain<Real>::check_and_wrap() {
         fmt::format("particle {} left the domain at ({:.6g}, {:.6g}, {:.6g}) m, t = {:.6g} s, speed {:.4g} m/s, not "
                     "through an outlet. "
                     "Close the gap in the walls, enlarge [domain], or add an [[outlet]] there.",
-                    s.id, s.position.x, s.position.y, s.position.z, time(), norm(s.velocity)));
+                    s.id, s.position.x, s.position.y, s.position.z, time(), norm(s.velocity)),
+        s.position);
   }
 }
 
@@ -205,19 +206,27 @@ void Domain<Real>::search_solids() {
   Timer t(counters_.solid_search_seconds);
   if (solid_.primitives.empty()) return;
   const double solid_reach = 0.5 * skin_;  // the solid stands still: a particle comes no nearer than its own way
-  std::atomic<uint32_t> crowded{count_};
+  std::vector<SolidSearchOutcome> outcomes(chunks());
   parallel_for(chunks(), [&](size_t c) {
-    const uint32_t bad =
+    outcomes[c] =
         search_solid<Real>({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, solid_reach, index_.get(),
-                            &prepared_, &tables_, old_index_.data(), &history_, &contacts_[c]});
-    if (bad != count_) crowded = bad;
+                            &prepared_, &tables_, old_index_.data(), &history_, &contacts_[c], 1 - kMaxOverlapShare});
   });
-  if (crowded == count_) return;
-  const ParticleState s = state(crowded);
-  throw RunError(fmt::format(
-      "particle {} of radius {:.4g} m at ({:.6g}, {:.6g}, {:.6g}) m has more than {} fibres and walls within {:.4g} m; "
-      "use smaller particles, a coarser fibre network, or a smaller [neighbour] skin",
-      s.id, s.radius, s.position.x, s.position.y, s.position.z, kMaxSlots, s.radius + solid_reach));
+  for (const SolidSearchOutcome& o : outcomes) {
+    if (o.buried != count_) fail_buried(o.buried, o.buried_in);
+    if (o.crowded != count_) fail_crowded(o.crowded);
+  }
+}
+
+template <class Real>
+void Domain<Real>::fail_crowded(uint32_t particle) const {
+  const ParticleState s = state(particle);
+  throw RunError(
+      fmt::format("particle {} of radius {:.4g} m at ({:.6g}, {:.6g}, {:.6g}) m has more than {} fibres and "
+                  "walls within {:.4g} "
+                  "m; use smaller particles, a coarser fibre network, or a smaller [neighbour] skin",
+                  s.id, s.radius, s.position.x, s.position.y, s.position.z, kMaxSlots, s.radius + 0.5 * skin_),
+      s.position);
 }
 
 template class Domain<float>;

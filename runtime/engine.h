@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -32,6 +33,8 @@ struct ParticleState {
 // The run cannot go on: what happened, where, and what to change.
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
+  RunError(const std::string& what, const Vec3& place) : std::runtime_error(what), where(place) {}
+  std::optional<Vec3> where;  // m: what lies round it is written out beside the results
 };
 
 struct EngineCounters {
@@ -53,9 +56,10 @@ struct EngineCounters {
 };
 
 struct EngineOptions {
-  std::string isa;                 // empty: the best available
-  bool brute_force_solid = false;  // the oracle's twin of the Embree index
-  double skin = 0;                 // m; 0: from speeds and sizes
+  std::string isa;                       // empty: the best available
+  bool brute_force_solid = false;        // the oracle's twin of the Embree index
+  double skin = 0;                       // m; 0: from speeds and sizes
+  uint64_t list_check_interval = 20000;  // steps between proofs that no contact is missing from the lists; 0: none
 };
 
 class Engine {
@@ -66,7 +70,8 @@ class Engine {
   virtual void open_walls(const std::vector<uint32_t>& walls) = 0;    // removes primitives of these parts of the solid
 
   // One step of the case's dt. Throws RunError when the state is not to be trusted: a particle too fast, NaN, an
-  // overlap beyond the limit, a particle outside the domain.
+  // overlap beyond the limit, a particle outside the domain or going through the solid, a contact missing from the
+  // lists.
   virtual void step() = 0;
 
   // A particle for which this gives k >= 0 is taken out at the next list rebuild and counted in removed_mass[k].
@@ -76,11 +81,13 @@ class Engine {
   virtual size_t count() const = 0;
   virtual double time() const = 0;  // s since the run began
   virtual double dt() const = 0;
-  virtual double max_speed() const = 0;  // m/s, in the last step
+  virtual double max_speed() const = 0;    // m/s, in the last step
+  virtual double max_overlap() const = 0;  // in the last step, share of the radius (pairs: of the mean radius)
   virtual double skin() const = 0;
   virtual std::string isa() const = 0;
   virtual const EngineCounters& counters() const = 0;
-  virtual size_t bytes() const = 0;  // held in arrays now
+  virtual size_t bytes() const = 0;         // held in arrays now
+  virtual size_t step_traffic() const = 0;  // bytes that a step reads and writes at least: records and active blocks
 
   // The whole state, lists included: a fresh engine of the same case that loads it goes on to the same bits. Saving
   // changes nothing.

@@ -26,10 +26,12 @@ void request_stop(int) { stop_requested = 1; }
 
 struct Arguments {
   std::string case_file, out, isa;
+  uint64_t check_lists = scree::EngineOptions{}.list_check_interval;
   std::vector<std::string> set;
   int threads = 0;
   double checkpoint_every = 0;  // s; 0: not given
   bool resume = false;
+  bool force_memory = false;
 };
 
 // results/<case>, or the next of results/<case>-2, -3, ... that is free: nothing is overwritten.
@@ -56,6 +58,8 @@ int run(const Arguments& a) {
   }
   options.threads = a.threads;
   options.engine.isa = a.isa;
+  options.engine.list_check_interval = a.check_lists;
+  options.ignore_memory = a.force_memory;
   options.show_progress = isatty(STDERR_FILENO);
   options.stop = &stop_requested;
   options.tell = [](const std::string& text) { fmt::print(stderr, "scree: {}\n", text); };
@@ -150,6 +154,10 @@ int main(int argc, char** argv) {
   resume_command.add_option("DIR", a.out, "its results folder")->required();
   add_threads_option(resume_command, a);
   add_run_options(resume_command, a);
+  run_command.add_option("--check-lists", a.check_lists,
+                         "steps between proofs by a fresh search that no contact is missing from the lists (default "
+                         "20000; 0: none; 1: every step, for finding errors of the program)");
+  run_command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   CLI::App& check_command = *app.add_subcommand("check", "validate a case and print what would run");
   add_case_options(check_command, a);
   try {

@@ -18,6 +18,7 @@ namespace {
 constexpr int kVolumeSamples = 40000;
 constexpr int kPackingIterations = 4000;
 constexpr int kTries = 200;  // random positions for one poured particle
+constexpr double kMostBins = 1e7;
 
 Vec3 clamped(const Vec3& x, const Vec3& low, const Vec3& high) {
   const auto clamp = [](double v, double a, double b) { return a > b ? 0.5 * (a + b) : std::clamp(v, a, b); };
@@ -30,6 +31,9 @@ class SphereBins {
   SphereBins(const Bounds& box, double largest_radius)
       : low_(inflated(box, 2 * largest_radius).min), cell_(2 * largest_radius) {
     const Vec3 size = inflated(box, 2 * largest_radius).max - low_;
+    // Wider cells are as right and only slower: few particles in a huge region must not ask for a huge table.
+    cell_ = std::max({cell_, std::cbrt(size.x * size.y * size.z / kMostBins), size.x / kMostBins, size.y / kMostBins,
+                      size.z / kMostBins});
     for (int a = 0; a < 3; ++a) n_[a] = static_cast<int>((a == 0 ? size.x : a == 1 ? size.y : size.z) / cell_) + 1;
     cells_.resize(size_t(n_[0]) * n_[1] * n_[2]);
   }
@@ -172,6 +176,10 @@ void place_stratified(std::vector<PackedSphere>& spheres, const FreeSpace& space
   double radius = 0;
   for (const PackedSphere& s : spheres) radius += s.radius / static_cast<double>(spheres.size());
   const double cell = std::cbrt(space.volume(radius) / static_cast<double>(spheres.size()));
+  if (!(cell > 0)) {  // no sample found room: perhaps there is a little
+    for (PackedSphere& s : spheres) s.position = random_allowed_point(space, s.radius, random);
+    return;
+  }
   const Vec3 size = space.bounds().max - space.bounds().min;
   const auto cells = [&](double length) { return std::max(1, static_cast<int>(std::lround(length / cell))); };
   const int nx = cells(size.x), ny = cells(size.y), nz = cells(size.z);

@@ -103,4 +103,12 @@ void write_particles_vtp(const std::filesystem::path& path, std::span<const Part
                          order, n, n, point_data, points, verts, data.bytes()));
 }
 
+void write_neighbourhood_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles,
+                             const Vec3& where, double reach) {
+  std::vector<ParticleState> near;
+  for (const ParticleState& p : particles)
+    if (!(norm(p.position - where) > reach)) near.push_back(p);  // with those whose position is not a number
+  write_particles_vtp(path, near);
+}
+
 }  // namespace scree

@@ -37,4 +37,8 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 // in ParaView (Glyph: sphere, scale by radius) and in OVITO.
 void write_particles_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles);
 
+// The particles with their centres within `reach` (m) of `where`, the same way.
+void write_neighbourhood_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles,
+                             const Vec3& where, double reach);
+
 }  // namespace scree

@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "kernels/parallel.h"
+#include "runtime/case_size.h"
 #include "runtime/case_writer.h"
+#include "runtime/memory.h"
 #include "runtime/run_folder.h"
 #include "runtime/stages.h"
 #include "runtime/time_scales.h"
@@ -15,6 +17,8 @@
 namespace scree {
 
 namespace {
+
+constexpr double kFailureReach = 10;  // radii of the largest particle: what failure.vtp shows round a failure
 
 const char* text(RunStatus s) {
   return s == RunStatus::done ? "done" : s == RunStatus::interrupted ? "interrupted" : "failed";
@@ -142,10 +146,12 @@ std::unique_ptr<Simulation> resumed(const Case& c, const RunOptions& options,
 }  // namespace
 
 RunResult run_case(const Case& c, const RunOptions& options) {
+  if (!options.ignore_memory) require_memory(c);
   RunResult result;
   result.out = options.out;
   std::unique_ptr<Simulation> simulation;
   std::shared_ptr<spdlog::logger> log;
+  std::optional<Vec3> failed_at;
   const auto fail = [&](const std::string& why) {
     result.status = RunStatus::failed, result.message = why;
     if (log) log->error(why);
@@ -169,6 +175,7 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     log->warn("interrupted at t = {:.6g} s", simulation->engine().time());
   } catch (const RunError& e) {
     fail(e.what());
+    failed_at = e.where;
   } catch (const std::bad_alloc&) {
     fail("out of memory: run fewer particles, or on a machine with more; `scree check` prints what a case needs");
   }
@@ -178,6 +185,9 @@ RunResult run_case(const Case& c, const RunOptions& options) {
   try {
     result.steady = simulation->steady();
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
+    if (failed_at)
+      write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine().particles(), *failed_at,
+                              kFailureReach * largest_radius(c));
     if (c.output.final_vtk) write_particles_vtp(options.out / "particles.vtp", simulation->engine().particles());
     log->info("{}", text(result.status));
   } catch (const RunError& e) {

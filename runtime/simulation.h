@@ -18,6 +18,7 @@ struct RunOptions {
   bool show_progress = false;  // on a terminal
   EngineOptions engine;
   const volatile std::sig_atomic_t* stop = nullptr;  // set from outside (Ctrl-C): the run ends with what it has
+  bool ignore_memory = false;                        // run though the estimate says that it does not fit
   bool resume = false;                               // go on from the newest usable checkpoint in `out`
   std::function<void(const std::string&)> tell;      // what a user should read at once; it is in run.log, too
 };
@@ -33,9 +34,11 @@ struct RunResult {
 };
 
 // Writes run.log, case.toml, mass_flow.csv, meters.csv (when the case has meters), particles.vtp, summary.json into
-// options.out, whatever the end, and checkpoints on the way. A run that was resumed leaves the same as one that was
-// never interrupted. Throws CaseError for a case that cannot start, RunRefused (runtime/run_folder.h) when the folder
-// is in use or holds nothing that can be gone on from; never RunError: a failed run is a result.
+// options.out, whatever the end, checkpoints on the way, and failure.vtp, the particles round the place, when a check
+// stopped the run. A run that was resumed leaves the same as one that was never interrupted. Throws CaseError for a
+// case that cannot start, before anything is written if it needs more memory than there is, RunRefused
+// (runtime/run_folder.h) when the folder is in use or holds nothing that can be gone on from; never RunError: a failed
+// run is a result.
 RunResult run_case(const Case& c, const RunOptions& options);
 
 // What `scree check` prints: what will run, its time scales, memory (runtime/describe_case.cpp).

@@ -19,6 +19,7 @@
 #include "runtime/results.h"
 #include "runtime/run_state.h"
 #include "runtime/simulation.h"
+#include "runtime/watch.h"
 
 namespace scree {
 
@@ -39,6 +40,7 @@ class Simulation {
         log_(std::move(log)),
         solid_(c.solid),
         engine_(make_engine(c, options.engine)),
+        watch_(c),
         progress_(options.show_progress),
         checkpoints_(options.out, c.checkpoint.keep) {
     state_.source = c.source;
@@ -152,6 +154,7 @@ class Simulation {
         progress_.update(engine_->time(), engine_->count(), static_cast<double>(engine_->counters().particle_steps),
                          share());
         log_now_and_then();
+        for (const std::string& warning : watch_.look(*engine_)) log_->warn(warning);
       }
       engine_->step();
       if (engine_->counters().steps % steps_per_sample_ == 0) sample();
@@ -357,6 +360,7 @@ class Simulation {
   std::shared_ptr<spdlog::logger> log_;
   Solid solid_;  // with the walls that are still there
   std::unique_ptr<Engine> engine_;
+  Watch watch_;
   Progress progress_;
   std::unique_ptr<CsvWriter> flow_csv_, meters_csv_;
   std::unique_ptr<Pour> pour_;  // while one goes on

@@ -10,17 +10,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kEveryLook{"checkpoint.interval=1e-9", "checkpoint.keep=1000"};
+const char* const kEveryLook = "checkpoint.interval=1e-9";  // replaces those of stages' ends: the steps are the same
+const char* const kStageEndsOnly = "checkpoint.interval=1e6";
 
-// A finished run with a checkpoint of each of its moments.
+// A finished run and all its checkpoints.
 class FinishedRun {
  public:
-  explicit FinishedRun(std::vector<std::string> overrides = {}, int threads = 2)
+  explicit FinishedRun(const std::string& when = kEveryLook, const std::vector<std::string>& overrides = {})
       : threads_before_(thread_count()), file_(write_every_stage(folder_.path())), overrides_(overrides) {
-    overrides.insert(overrides.end(), kEveryLook.begin(), kEveryLook.end());
     RunOptions options;
-    options.out = out(), options.threads = threads;
-    const RunResult r = run_case(read_case(file_, overrides), options);
+    options.out = out(), options.threads = 2;
+    const RunResult r = run_case(understood({when, "checkpoint.keep=1000"}), options);
     EXPECT_EQ(r.status, RunStatus::done) << r.message;
   }
   ~FinishedRun() { set_thread_count(threads_before_); }
@@ -40,37 +40,46 @@ class FinishedRun {
   std::vector<std::string> overrides_;
 };
 
-// The checkpoint in the middle of those of each stage, and the stages' ends: (what, path).
+// One checkpoint from within each stage, and one from between any two: (what, path).
 std::map<std::string, fs::path> moments(const fs::path& out, const Case& c) {
-  std::map<uint64_t, std::vector<fs::path>> within, at_beginning;
+  std::map<uint64_t, std::vector<fs::path>> within, between;
   for (const fs::path& path : checkpoints_in(out)) {
     const RunState state = run_state_of(path);
-    (state.begun ? within : at_beginning)[state.stage].push_back(path);
+    (state.begun ? within : between)[state.stage].push_back(path);
   }
   std::map<std::string, fs::path> result;
-  for (const auto& [stage, paths] : within)
-    result[fmt::format("within {}, {}", stage, c.stages.at(stage).name)] = paths[paths.size() / 2];
-  for (const auto& [stage, paths] : at_beginning) result[fmt::format("before stage {}", stage)] = paths.front();
+  for (const auto& [stage, paths] : within) result["within " + c.stages.at(stage).name] = paths[paths.size() / 2];
+  for (const auto& [stage, paths] : between) result["after " + c.stages.at(stage - 1).name] = paths.front();
   return result;
 }
 
-class Resume : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(Resume, FromAnyStageEndsInTheSameBitsOnAnyNumberOfThreads) {
-  FinishedRun run({std::string("contact.precision=") + GetParam()});
-  const Case c = run.understood();
-  const auto all = moments(run.out(), c);
-  EXPECT_GE(all.size(), 8u);  // four stages take time; what falls on one step keeps the last state of it
-  int threads = 1;
-  for (const auto& [what, checkpoint] : all) {
-    SCOPED_TRACE(what);
-    const fs::path out = run.fresh_folder();
-    make_died_run(out, checkpoint);
-    const RunResult r = resume_in(out, c, threads);
-    threads = 4 - threads;  // 1 and 3
-    ASSERT_EQ(r.status, RunStatus::done) << r.message;
-    expect_same_results(out, run.out());
+class Resume : public ::testing::TestWithParam<const char*> {
+ protected:
+  void expect_the_same_from_each_moment(const char* when, const std::vector<std::string>& expected) {
+    FinishedRun run(when, {std::string("contact.precision=") + GetParam()});
+    std::vector<std::string> found;
+    for (const auto& [what, checkpoint] : moments(run.out(), run.understood())) {
+      SCOPED_TRACE(what);
+      found.push_back(what);
+      const fs::path out = run.fresh_folder();
+      make_died_run(out, checkpoint);
+      const RunResult r = resume_in(out, run.understood(), found.size() % 2 ? 1 : 3);
+      ASSERT_EQ(r.status, RunStatus::done) << r.message;
+      expect_same_results(out, run.out());
+    }
+    EXPECT_EQ(found, expected);
   }
+};
+
+TEST_P(Resume, FromWithinAStageEndsInTheSameBitsOnAnyNumberOfThreads) {
+  expect_the_same_from_each_moment(kEveryLook,
+                                   {"after drain", "within drain", "within fall", "within pour", "within settle"});
+}
+
+// Of stages that end at the same step the last one's checkpoint stays.
+TEST_P(Resume, FromAStagesEndEndsInTheSameBitsOnAnyNumberOfThreads) {
+  expect_the_same_from_each_moment(kStageEndsOnly,
+                                   {"after drain", "after fill", "after open", "after pour", "after read"});
 }
 
 INSTANTIATE_TEST_SUITE_P(Precisions, Resume, ::testing::Values("mixed", "reference"));
@@ -231,9 +240,8 @@ TEST(Resume, OfARunThatDiedBeforeItsFirstCheckpointBeginsAtTheStart) {
 // A failing run leaves its state to be looked at, and goes on from the last good one: to the same failure.
 TEST(Resume, OfAFailedRunStartsFromTheLastGoodState) {
   const TemporaryFolder folder;
-  const Case c =
-      read_case(write_every_stage(folder.path()),
-                {"outlet.exit.remove_beyond=1", "domain.max=[0.02, 0.02, 0.05]", "domain.min=[-0.02, -0.02, -0.003]"});
+  const Case c = read_case(write_every_stage(folder.path()),
+                           {"wall.box.open_faces=[\"bottom\", \"top\"]", "stage.pour.velocity=[0, 0, 5]"});
   RunOptions options;
   options.out = folder.path() / "out";
   const RunResult r = run_case(c, options);

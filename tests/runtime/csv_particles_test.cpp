@@ -52,10 +52,12 @@ TEST(CsvParticles, WrongFilesSayWhere) {
       {"x,y,z,r\n0,1.5mm,0,1e-3\n", ":2:3: ", "'1.5mm' is not a number"},
       {"x,y,z,r\n0,0, nan,1e-3\n", ":2:6: ", "column 'z': 'nan' is not a finite number"},
       {"x,y,z,r\ninf,0,0,1e-3\n", ":2:1: ", "column 'x': 'inf' is not a finite number"},
-      {"x,y,z,r\n0,0,0,0\n", ":2:7: ", "column 'r': 0 is out of range, must be greater than 0 and at most 5 m"},
+      {"x,y,z,r\n0,0,0,0\n", ":2:7: ", "column 'r': 0 is out of range, must be between 5e-08 and 5 m"},
       {"x,y,z,r\n0,0,0,-1e-3\n", ":2:7: ", "-1e-3 is out of range"},
       {"x,y,z,r\n0,0,0,400\n", ":2:7: ", "400 is out of range"},
       {"x,y,z,r\n0,0,0,1e-999\n", ":2:7: ", "'1e-999' is not a number"},
+      {"x,y,z,r\n0,1e9,0,1e-3\n", ":2:3: ", "column 'y': 1e9 is out of range, must be between -1000 and 1000 m"},
+      {"x,y,z,r,vx,vy,vz\n0,0,0,1e-3,0,3e8,0\n", ":2:14: ", "column 'vy': 3e8 is out of range"},
   };
   Folder folder;
   for (const auto& [text, place, problem] : wrong) {

@@ -1,0 +1,43 @@
+// Proves that the contact lists hold every contact, by a fresh search of its own: what a missed rebuild, a wrong bound
+// on the particles' travel or a wrong search would break first. Reads only. Costs about as much as a list rebuild.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/solid_index.h"
+#include "kernels/contacts.h"
+#include "kernels/particle.h"
+#include "kernels/solid_tables.h"
+
+namespace scree {
+
+// The particles as they were when the step took its forces, and the lists that it took them from.
+template <class Real>
+struct ListCheckTask {
+  const Particle<Real>* particles;
+  uint32_t count, chunk_size;
+  const std::vector<ChunkContacts<Real>>* contacts;  // by chunk
+  Bounds box;
+  const double *period, *inverse_period;  // m, 1/m; 0: not periodic
+  double max_radius;                      // m
+  const SolidIndex* index;
+  const SolidTables<Real>* tables;
+};
+
+struct MissingContact {
+  uint32_t i = 0;             // the particle
+  std::optional<uint32_t> j;  // the other one; without it the contact is with the solid
+  int kind = 0;               // of the solid's skeleton, and
+  uint32_t row = 0;           // its row in that kind's table
+  double overlap = 0;         // m
+};
+
+// The missing contact of the lowest particle index, or nothing.
+template <class Real>
+std::optional<MissingContact> find_missing_contact(const ListCheckTask<Real>& task);
+
+extern template std::optional<MissingContact> find_missing_contact(const ListCheckTask<float>&);
+extern template std::optional<MissingContact> find_missing_contact(const ListCheckTask<double>&);
+
+}  // namespace scree

@@ -1,0 +1,117 @@
+#include "runtime/watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "runtime/case_physics.h"
+
+namespace scree {
+
+namespace {
+
+constexpr uint64_t kStepsPerLook = 500;
+constexpr double kMargin = 2;        // of the energy's bound, for the laws' own small gains
+constexpr double kContacts = 10;     // of a particle, on average: six of twelve neighbours' halves, and walls
+constexpr double kRestSpeed = 1e-5;  // m/s: below it all is round-off
+constexpr double kWarnAt = 0.2, kStopAt = 0.5;  // time step / Hertz contact time
+
+double largest_wall_speed(const Case& c) {
+  double speed = 0;
+  for (const Primitive& p : c.solid.primitives) speed = std::max(speed, norm(p.velocity));
+  return speed;
+}
+
+EnergyLook look_at(const Engine& e, const std::optional<EnergyLook>& last) {
+  EnergyLook now{e.time(), 0, 0, e.max_speed(), e.max_overlap(), e.count(), e.counters().inserted};
+  now.kinetic = e.sum([](const ParticleState& p) {
+    return 0.5 * p.mass * (dot(p.velocity, p.velocity) + 0.4 * p.radius * p.radius * dot(p.spin, p.spin));
+  });
+  const bool same = last && last->particles == now.particles && last->inserted == now.inserted;
+  now.mass = same ? last->mass : e.sum([](const ParticleState& p) { return p.mass; });
+  return now;
+}
+
+ParticleState fastest_of(const Engine& e) {
+  const std::vector<ParticleState> all = e.particles();
+  return *std::ranges::max_element(all, {}, [](const ParticleState& p) { return dot(p.velocity, p.velocity); });
+}
+
+}  // namespace
+
+EnergyBudget::EnergyBudget(const Case& c)
+    : gravity_(norm(c.gravity)), wall_speed_(largest_wall_speed(c)), stiffness_(0), radius_(largest_radius(c)) {
+  for (const ParticleKind& kind : c.kinds) {  // against a rigid partner: stiffer than any real one
+    const Material& m = c.materials[kind.material];
+    stiffness_ = std::max(stiffness_, m.youngs_modulus / (1 - m.poisson_ratio * m.poisson_ratio));
+  }
+}
+
+double EnergyBudget::most_after(const EnergyLook& before, const EnergyLook& now) const {
+  const double dt = now.time - before.time, mass = std::max(before.mass, now.mass);
+  const double speed = std::max(before.max_speed, now.max_speed) + gravity_ * dt;
+  const double from_gravity = mass * gravity_ * speed * dt;
+  // A collision with a wall at speed w turns v into v + 2 w at most.
+  const double from_walls = 2 * mass * wall_speed_ * (speed + wall_speed_);
+  // Hertz: 8/15 E* sqrt(R*) overlap^(5/2), R* at most R; as much again in the tangential and rolling springs.
+  const double overlap = before.max_overlap * radius_;
+  const double per_contact = 2 * 8.0 / 15 * stiffness_ * std::sqrt(radius_) * std::pow(overlap, 2.5);
+  const double elastic = kContacts * static_cast<double>(before.particles) * per_contact;
+  const double at_rest = 0.5 * mass * kRestSpeed * kRestSpeed;
+  return kMargin * (before.kinetic + from_gravity + from_walls + elastic + at_rest);
+}
+
+Watch::Watch(const Case& c) : case_(c), budget_(c), wall_speed_(largest_wall_speed(c)) {}
+
+std::vector<std::string> Watch::look(const Engine& engine) {
+  const uint64_t steps = engine.counters().steps;
+  if (steps < next_step_ || engine.count() == 0) return {};
+  next_step_ = steps + kStepsPerLook;
+  check_energy(engine);
+  return check_step(engine);
+}
+
+void Watch::check_energy(const Engine& engine) {
+  const EnergyLook now = look_at(engine, last_);
+  // New particles bring energy of their own: after them, begin again.
+  const bool comparable = last_ && last_->inserted == now.inserted && last_->particles > 0;
+  if (comparable && now.kinetic > budget_.most_after(*last_, now)) {
+    const ParticleState p = fastest_of(engine);
+    throw RunError(
+        fmt::format(
+            "the kinetic energy of all particles rose from {:.4g} J at t = {:.6g} s to {:.4g} J at t = {:.6g} s, "
+            "gravity, moving walls and elastic contacts can account for {:.4g} J at most; the fastest is particle "
+            "{} at ({:.6g}, {:.6g}, {:.6g}) m with {:.4g} m/s: use a smaller [time] step (now {:.4g} s)",
+            last_->kinetic, last_->time, now.kinetic, now.time, budget_.most_after(*last_, now), p.id, p.position.x,
+            p.position.y, p.position.z, norm(p.velocity), engine.dt()),
+        p.position);
+  }
+  last_ = now;
+}
+
+// Contacts at the largest speed seen last the shortest. Hertz's time falls with speed^(1/5) only, so this speaks when
+// the step was chosen by hand or allowed to be large.
+std::vector<std::string> Watch::check_step(const Engine& engine) {
+  const double speed = engine.max_speed() + wall_speed_;
+  if (speed <= kRestSpeed) return {};
+  double hertz = 1e300;
+  for (const ParticleKind& k : case_.kinds)
+    hertz = std::min(hertz, hertz_time(case_.materials[k.material], smallest_radius(case_), speed));
+  const double share = engine.dt() / hertz;
+  const std::string text = fmt::format(
+      "the time step {:.4g} s is {:.2f} of the Hertz contact time {:.4g} s at the largest speed seen, {:.4g} m/s",
+      engine.dt(), share, hertz, speed);
+  if (share > kStopAt) {
+    const ParticleState p = fastest_of(engine);
+    throw RunError(fmt::format("{}, of particle {} at ({:.6g}, {:.6g}, {:.6g}) m, t = {:.6g} s; at most {} is allowed: "
+                               "use a smaller [time] step",
+                               text, p.id, p.position.x, p.position.y, p.position.z, engine.time(), kStopAt),
+                   p.position);
+  }
+  if (share <= kWarnAt || warned_) return {};
+  warned_ = true;
+  return {fmt::format("{}; above {} contacts are badly resolved, above {} the run stops", text, kWarnAt, kStopAt)};
+}
+
+}  // namespace scree
