@@ -1,69 +1,59 @@
-// The scenes that the benchmarks time. A settled bed is made once, small and periodic, and tiled to any size: every
-// tile is the same settled state, so a million particles need no hours of settling.
+// The scenes that the benchmarks time. States that take long to reach are made once per process, small, and tiled to
+// any size: every tile is the same settled state, so a million particles need no hours of settling. SI units.
 #pragma once
 
-#include "geometry/walls.h"
-#include "runtime/case_physics.h"
-#include "runtime/placement.h"
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/engine.h"
 
 namespace scree::bench {
 
-inline constexpr double kDiameter = 4e-4;  // m, the paper's particles
+using State = std::vector<ParticleState>;
+
+// Prepared states are read from this folder when they are there and written to it when they are not: for programs that
+// want the same state in several processes, or in another code. Without it a state lives as long as the process.
+void keep_states_in(const std::filesystem::path& folder);
+
+// x, y, z, r, vx, vy, vz with all digits: reading gives the same bits.
+void write_state_csv(const std::filesystem::path& path, const State& state);
+
+// An engine with the case's outlets at work, `state` in it and `steps` steps done.
+std::unique_ptr<Engine> started_engine(const Case& c, const State& state, int steps);
+
+inline constexpr double kDiameter = 4e-4;       // m, the paper's particles
+inline constexpr uint64_t kTileGrains = 10504;  // in every tile, so that beds of equal tiles have equal numbers
 
 // The paper's materials and contact law (Kaur et al. 2023, Table 2), without particles or walls.
-inline Case paper_case() {
-  Case c;
-  c.materials = {{"carbobead", 3071, 1e7, 0.28}, {"steel", 0, 1e7, 0.28}};
-  c.pairs = {{0, 0, 0.52, 0.53, 0.37}, {0, 1, 0.41, 0.5, 0.41}};
-  ParticleKind grain;
-  grain.name = "grain";
-  grain.size.diameters = {kDiameter}, grain.size.fractions = {1};
-  c.kinds = {grain};
-  c.time.step = 5e-6;
-  return c;
-}
+Case paper_case();
 
-// A bed on a floor, periodic in x and y: `tiles` x `tiles` copies of one of 25 x 25 diameters and ~10,000 particles.
-inline Case bed_case(int tiles) {
-  Case c = paper_case();
-  const double side = 25 * kDiameter * tiles, height = 60 * kDiameter;
-  c.domain = {{0, 0, -kDiameter}, {side, side, height}};
-  c.periodic[0] = c.periodic[1] = true;
-  c.solid.walls = {"floor"};
-  c.solid.primitives = rectangle({0, 0, 0}, {side, 0, 0}, {0, side, 0}, {1, 0});
-  return c;
-}
+// A bed on a floor, periodic in x and y: `tiles` x `tiles` copies of one.
+struct Bed {
+  std::string name;
+  std::vector<double> diameters;  // m, in equal numbers
+  double side;                    // m, of a tile
+  double fill_height;             // m, that a tile's grains fall from
+};
+const Bed& monodisperse();
+const Bed& polydisperse();  // 1:3, the smallest is the paper's grain: the same time step is as fine as for it
+Case bed_case(const Bed& bed, int tiles);
+State settled_bed(const Bed& bed, int tiles);
 
-// One tile at rest. Settled by the engine itself from a random packing; kept for the process' life.
-inline const std::vector<ParticleState>& settled_tile() {
-  static const std::vector<ParticleState> tile = [] {
-    const Case c = bed_case(1);
-    Case filled = c;
-    Region box;
-    box.name = "bed";
-    const double side = 25 * kDiameter;
-    box.min = {0, 0, 0}, box.max = {side, side, 16 * kDiameter};
-    filled.regions = {box};
-    FillStage stage;
-    stage.regions = {0}, stage.mixture = {{0}, {1.0}}, stage.solid_fraction = 0.55;
-    auto engine = make_engine(c);
-    engine->insert(fill(filled, stage, c.solid, {}, 1));
-    for (int k = 0; k < 40000; ++k) engine->step();
-    return engine->particles();
-  }();
-  return tile;
-}
+// cases/olhx/mini_liggghts.toml with the lid open, and its grains above the exit 0.2 s later: the lattice is half full
+// and flowing, the first grains have left.
+Case drain_case();
+State drain_in_flow();
 
-inline std::vector<ParticleState> settled_bed(int tiles) {
-  std::vector<ParticleState> bed;
-  const double side = 25 * kDiameter;
-  for (int y = 0; y < tiles; ++y)
-    for (int x = 0; x < tiles; ++x)
-      for (ParticleState p : settled_tile()) {
-        p.position += {x * side, y * side, 0};
-        bed.push_back(p);
-      }
-  return bed;
-}
+// The paper's full lattice and hopper (cases/olhx/paper_088.toml, lid included) packed with tiles of the settled bed,
+// stacked from the height `bottom` to `top`; grains that a fibre or wall would cut are left out.
+enum class Fibres { with, without };
+Case paper_hopper_case(Fibres fibres);
+State stacked_grains(const Case& c, double bottom, double top);
+
+// The hopper without the lattice, 15 ms after its lid was opened.
+Case open_hopper_case();
+State hopper_in_flow();
 
 }  // namespace scree::bench
