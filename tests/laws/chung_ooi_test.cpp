@@ -72,9 +72,10 @@ TEST_P(ChungOoi, Test4ObliqueImpactAtConstantSpeed) {
   }
 }
 
-// Columns: tan(angle of incidence) / mu, R w / (mu v_n) after the impact of steel and of polyethylene. The paper's
-// curves below gross sliding come from models with micro-slip, which this law (one spring, one slider) does not have:
-// see Test5FollowsTheLawBelowGrossSliding.
+// Columns: tan(angle of incidence) / mu as the file calls it (it saturates at 4.8, which is Maw's 7 kappa - 1 and so
+// rather kappa tan / mu, kappa = 2 (1 - nu) / (2 - nu)), R w / (mu v_n) after the impact of steel and polyethylene. The
+// paper's curves below gross sliding come from models with micro-slip, which this law (one spring, one slider) does not
+// have: see Test5FollowsTheLawBelowGrossSliding.
 TEST_P(ChungOoi, Test5GrossSliding) {
   const double steel[][2] = {{6.006, -5.006}, {10.01, -5.004}, {20.00, -4.991}};
   const double polyethylene[][2] = {{6.006, -4.958}, {9.994, -4.963}, {20.00, -4.942}};
