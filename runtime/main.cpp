@@ -13,6 +13,7 @@
 #include "kernels/step_kernels.h"
 #include "runtime/case_error.h"
 #include "runtime/case_reader.h"
+#include "runtime/render/options.h"
 #include "runtime/run_folder.h"
 #include "runtime/simulation.h"
 #include "runtime/time_scales.h"
@@ -105,6 +106,13 @@ int check(const Arguments& a) {
   return kDone;
 }
 
+int render(const Arguments& a, const scree::RenderArguments& pictures) {
+  if (a.threads > 0) scree::set_thread_count(a.threads);
+  std::signal(SIGXFSZ, SIG_IGN);
+  scree::render_folder(pictures, [](const std::string& text) { fmt::print("{}\n", text); });
+  return kDone;
+}
+
 void add_threads_option(CLI::App& command, Arguments& a) {
   command.add_option("--threads", a.threads, "threads (default: all processors); the results do not depend on it")
       ->check(CLI::Range(1, 4096));
@@ -160,6 +168,9 @@ int main(int argc, char** argv) {
   run_command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   CLI::App& check_command = *app.add_subcommand("check", "validate a case and print what would run");
   add_case_options(check_command, a);
+  scree::RenderArguments pictures;
+  CLI::App& render_command = scree::add_render_command(app, pictures);
+  add_threads_option(render_command, a);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -167,6 +178,7 @@ int main(int argc, char** argv) {
     return code == 0 ? kDone : kBadInput;
   }
   try {
+    if (render_command.parsed()) return render(a, pictures);
     return run_command.parsed() ? run(a) : resume_command.parsed() ? resume(a) : check(a);
   } catch (const scree::CaseError& e) {
     fmt::print(stderr, "scree: {}\n", e.what());
