@@ -53,9 +53,10 @@ std::vector<Segment> edges_of(const std::vector<Quad>& quads) {
   for (const Quad& q : quads)
     for (int k = 0; k < 4; ++k) {
       const Segment segment{q.corners[k], q.corners[(k + 1) % 4]};
-      const auto ends = std::minmax(corner_of(segment.a), corner_of(segment.b));
+      std::pair<Corner, Corner> ends{corner_of(segment.a), corner_of(segment.b)};
       if (ends.first == ends.second) continue;
-      const auto [edge, fresh] = edges.try_emplace({ends.first, ends.second}, Edge{segment, normal_of(q)});
+      if (ends.second < ends.first) std::swap(ends.first, ends.second);
+      const auto [edge, fresh] = edges.try_emplace(ends, Edge{segment, normal_of(q)});
       if (!fresh && std::abs(dot(edge->second.normal, normal_of(q))) > kSmooth) edge->second.smooth = true;
     }
   std::vector<Segment> result;
@@ -115,7 +116,8 @@ CameraSubject camera_subject(const Case& c, const Bounds& region) {
   subject.region = region;
   if (c.fibres.count > 0)
     subject.junction = junction_near(c.solid, 0.5 * (c.fibres.section.min + c.fibres.section.max));
-  subject.junction_size = std::max(kJunctionFibres * mean_fibre_diameter(c.solid),
+  subject.fibre_radius = 0.5 * mean_fibre_diameter(c.solid);
+  subject.junction_size = std::max(2 * kJunctionFibres * subject.fibre_radius,
                                    c.kinds.empty() ? 0 : kJunctionGrains * 2 * largest_radius(c));
   return subject;
 }

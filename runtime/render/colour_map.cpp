@@ -6,9 +6,10 @@ namespace scree {
 
 namespace {
 
-// Nine points of viridis (S. van der Walt and N. Smith, matplotlib, CC0), evenly spaced.
-constexpr Srgb kViridis[] = {{68, 1, 84},    {71, 44, 122}, {59, 81, 139},  {44, 113, 142}, {33, 144, 141},
-                             {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}};
+// The way of viridis (S. van der Walt and N. Smith, matplotlib) from violet over green to yellow, but beginning at half
+// the lightness of white: shading and shadows need room below, or slow grains are black.
+constexpr Srgb kSequential[] = {{98, 78, 158},  {78, 104, 178}, {56, 130, 184}, {40, 154, 172}, {46, 176, 146},
+                                {92, 196, 110}, {154, 212, 72}, {218, 224, 52}, {255, 236, 96}};
 // Blue to red through light grey, of equal lightness at equal distance from the middle (K. Moreland, "Diverging Color
 // Maps for Scientific Visualization", 2009).
 constexpr Srgb kCoolWarm[] = {{59, 76, 192},   {98, 130, 234},  {141, 176, 254}, {184, 208, 249}, {221, 221, 221},
@@ -40,19 +41,38 @@ Rgb from_lab(const Lab& c) {
           -0.0041960863f * l - 0.7034186147f * m + 1.7076147010f * s};
 }
 
-Srgb between(std::span<const Srgb> points, double x) {
-  const double place = std::clamp(x, 0.0, 1.0) * static_cast<double>(points.size() - 1);
-  const size_t k = std::min(static_cast<size_t>(place), points.size() - 2);
-  const auto share = static_cast<float>(place - static_cast<double>(k));
-  const Lab p = to_lab(to_linear(points[k])), q = to_lab(to_linear(points[k + 1]));
-  return to_srgb(from_lab({p.l + share * (q.l - p.l), p.a + share * (q.a - p.a), p.b + share * (q.b - p.b)}));
-}
+float distance(const Lab& p, const Lab& q) { return std::hypot(p.l - q.l, p.a - q.a, p.b - q.b); }
+
+// A way through Oklab by its points, walked at an even pace.
+class Way {
+ public:
+  explicit Way(std::span<const Srgb> points) {
+    for (const Srgb& c : points) {
+      points_.push_back(to_lab(to_linear(c)));
+      const size_t k = points_.size() - 1;
+      lengths_.push_back(k == 0 ? 0 : lengths_[k - 1] + distance(points_[k - 1], points_[k]));
+    }
+  }
+  Srgb at(double x) const {
+    const auto walked = static_cast<float>(std::clamp(x, 0.0, 1.0)) * lengths_.back();
+    size_t k = 1;
+    while (k + 1 < points_.size() && lengths_[k] < walked) ++k;
+    const Lab &p = points_[k - 1], &q = points_[k];
+    const float share = (walked - lengths_[k - 1]) / (lengths_[k] - lengths_[k - 1]);
+    return to_srgb(from_lab({p.l + share * (q.l - p.l), p.a + share * (q.a - p.a), p.b + share * (q.b - p.b)}));
+  }
+
+ private:
+  std::vector<Lab> points_;
+  std::vector<float> lengths_;  // from the first point
+};
 
 }  // namespace
 
 Srgb colour_of(ColourMap map, double x) {
   if (std::isnan(x)) return kNoValue;
-  return map == ColourMap::sequential ? between(kViridis, x) : between(kCoolWarm, x);
+  static const Way sequential(kSequential), diverging(kCoolWarm);
+  return (map == ColourMap::sequential ? sequential : diverging).at(x);
 }
 
 Srgb colour_of_category(size_t index) { return kCategories[index % std::size(kCategories)]; }

@@ -23,11 +23,13 @@ std::vector<double> numbers_in(const std::string& text) {
   return numbers;
 }
 
-// Without a cut of its own a junction would hide behind the grains before it.
-std::vector<CutPlane> cuts_of(const PictureRequest& request, const Camera& camera, const Bounds& region) {
+// Without a cut of its own a junction would hide behind the grains before it: they go, its fibres stay whole.
+std::vector<CutPlane> cuts_of(const PictureRequest& request, const Camera& camera, const CameraSubject& subject,
+                              const Bounds& region) {
   std::vector<CutPlane> cuts;
   for (const std::string& text : request.cuts) cuts.push_back(parse_cut(text, region));
-  if (request.camera.name == "junction" && cuts.empty()) cuts.push_back({{0, -1, 0}, -camera.target.y});
+  if (request.camera.name == "junction" && cuts.empty())
+    cuts.push_back({{0, -1, 0}, subject.fibre_radius - camera.target.y});
   return cuts;
 }
 
@@ -94,12 +96,12 @@ Image draw_picture(const Case& c, const ParticleFrame& frame, const PictureReque
   const ColourScale scale = colour_scale(c, request.colour, values, request.range);
   const Bounds region = region_of_interest(c, frame);
   const PictureSize& size = request.size;
-  const Camera camera =
-      make_camera(request.camera, camera_subject(c, region), static_cast<double>(size.width) / size.height);
+  const CameraSubject subject = camera_subject(c, region);
+  const Camera camera = make_camera(request.camera, subject, static_cast<double>(size.width) / size.height);
   Scene scene = scene_of(frame, scale, values);
   add_solid(scene, c.solid, opened);
   scene.wall_style = request.walls;
-  scene.cuts = cuts_of(request, camera, region);
+  scene.cuts = cuts_of(request, camera, subject, region);
   Image image = render(scene, camera, size, request.samples);
   if (request.annotations) annotate(image, {scale, scale_bar(camera, size.width, size.height), c.title, frame.time});
   return image;

@@ -9,7 +9,8 @@ namespace {
 
 // The light. Key and ambient together light a surface that faces the key light fully to its own colour, so that colours
 // compare with the colour bar's.
-constexpr float kKey = 0.62f, kAmbient = 0.50f;
+constexpr float kKey = 0.60f, kAmbient = 0.68f;
+constexpr float kBounced = 0.2f;       // of the ambient light, where it is kept out: other surfaces send it on
 constexpr float kLightSpread = 0.16f;  // radius of the key light as seen from the scene, rad: the softness of shadows
 constexpr float kGround = 0.55f;       // light from below, of that from above
 constexpr float kReachInBalls = 6, kReachInFibres = 4;  // kReach, in radii
@@ -220,7 +221,7 @@ void TilePainter::light(Tile& tile) const {
     const float facing = std::max(0.0f, dot(s.normal, to_light_));
     const float key = shadowed[k] ? 0 : kKey * facing;
     const float up = 0.5f + 0.5f * dot(s.normal, sky_);
-    const float ambient = covered[k] ? 0 : kAmbient * (kGround + (1 - kGround) * up);
+    const float ambient = (covered[k] ? kBounced : 1) * kAmbient * (kGround + (1 - kGround) * up);
     const float gleam = std::pow(std::max(0.0f, dot(s.normal, unit(to_light_ + s.view))), kShininess);
     const float shine = shadowed[k] || facing == 0 ? 0 : s.shine * gleam;
     tile.colours[s.sample] = (key + ambient) * s.colour + shine * Rgb{1, 1, 1};
