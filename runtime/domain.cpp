@@ -6,6 +6,7 @@
 
 #include "kernels/parallel.h"
 #include "kernels/periodic.h"
+#include "kernels/touching.h"
 #include "runtime/case_physics.h"
 #include "runtime/timer.h"
 
@@ -150,13 +151,21 @@ void Domain<Real>::step() {
   if (check_interval_ > 0 && counters_.steps % check_interval_ == 0) check_lists();
 }
 
+// What one chunk's pass reads; the lists and the records that a step writes are not in it.
+template <class Real>
+ChunkTask<Real> Domain<Real>::chunk_task(size_t c, Real* rows) const {
+  return {now_.data(), nullptr,     chunk_begin(c),          chunk_end(c),         count_,
+          nullptr,     &materials_, tables_.segments.view(), tables_.quads.view(), tables_.revolutions.view(),
+          &settings_,  rows};
+}
+
 template <class Real>
 void Domain<Real>::advance_chunks() {
   parallel_for(chunks(), [&](size_t c) {
     alignas(64) thread_local Real rows[(kChunk + 1) * 8];
-    outcomes_[c] =
-        kernels_.step({now_.data(), next_.data(), chunk_begin(c), chunk_end(c), count_, &contacts_[c], &materials_,
-                       tables_.segments.view(), tables_.quads.view(), tables_.revolutions.view(), &settings_, rows});
+    ChunkTask<Real> task = chunk_task(c, rows);
+    task.new_particles = next_.data(), task.contacts = &contacts_[c];
+    outcomes_[c] = kernels_.step(task);
   });
   now_.swap(next_);
 }
@@ -231,6 +240,23 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
     for (uint32_t k = 0; k < contacts_[c].pairs; ++k) look(contacts_[c].pair_i(k), contacts_[c].pair_j(k));
     for (const NearPair& n : contacts_[c].near) look(n.i, n.j);
   }
+  return result;
+}
+
+template <class Real>
+std::vector<ContactState> Domain<Real>::contacts() const {
+  if (!lists_valid_) return {};
+  std::vector<std::vector<ContactState>> found(contacts_.size());
+  parallel_for(found.size(), [&](size_t c) {
+    visit_touching<Real>(chunk_task(c, nullptr), contacts_[c], [&](const TouchingContact& t) {
+      const bool solid = t.skeleton >= 0;
+      if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
+      found[c].push_back(
+          {t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force, t.slip});
+    });
+  });
+  std::vector<ContactState> result;
+  for (const auto& part : found) result.insert(result.end(), part.begin(), part.end());
   return result;
 }
 

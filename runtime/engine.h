@@ -30,6 +30,18 @@ struct ParticleState {
   uint64_t id = 0;  // given by the engine at insertion
 };
 
+// A contact as the outside sees it.
+struct ContactState {
+  size_t i = 0;             // index into particles()
+  size_t j = 0;             // the other particle's, or the index of a primitive of Case::solid
+  bool with_solid = false;  // j is a primitive
+  double overlap = 0;       // m
+  Vec3 normal{};            // unit, from j to i
+  Vec3 point{};             // m; of a periodic pair beside i
+  Vec3 force{};             // N, on i; -force on j
+  Vec3 slip{};              // m/s, tangential velocity of i relative to j at the contact
+};
+
 // The run cannot go on: what happened, where, and what to change.
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -105,6 +117,10 @@ class Engine {
     double overlap;
   };
   virtual std::vector<TouchingPair> touching_pairs() const = 0;
+
+  // Every contact that touches now, each once, with the force that the next step will apply; nothing between an
+  // insertion or opening of walls and the next step. The same list for any number of threads.
+  virtual std::vector<ContactState> contacts() const = 0;
 };
 
 std::unique_ptr<Engine> make_engine(const Case& c, const EngineOptions& options = {});

@@ -67,6 +67,8 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
                            {"particles", r.particles}});
   j["checkpoints"] = {{"written", simulation.checkpoints_written()}, {"seconds", simulation.checkpoint_seconds()}};
   j["resumed_from"] = simulation.resumed_from().empty() ? nlohmann::json() : nlohmann::json(simulation.resumed_from());
+  for (const auto& o : simulation.observers())
+    if (const nlohmann::json own = o->summary(); !own.is_null()) j[o->name()] = own;
   j["wall_seconds"] = {{"step", k.step_seconds},
                        {"history", k.history_seconds},
                        {"sort", k.sort_seconds},
@@ -184,6 +186,7 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     result.checkpoint = good.front().string();
   try {
     result.steady = simulation->steady();
+    simulation->finish_observers();
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
     if (failed_at)
       write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine().particles(), *failed_at,
