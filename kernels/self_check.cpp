@@ -64,7 +64,8 @@ Outcome stepped(const StepKernels<float>& kernels, bool uniform) {
                               .limit_attraction = false,
                               .check_near = true,
                               .inner = 1e-5,
-                              .speed_limit = 1e3};
+                              .speed_limit = 1e3,
+                              .profile = false};
   Outcome o{heap(), neighbours()};
   std::vector<Particle<float>> next = o.particles;
   std::vector<float> storage((kCount + 1) * 8 + 16);
