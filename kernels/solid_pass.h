@@ -56,7 +56,7 @@ struct SolidLanes {
 
   const ChunkTask<Real>& task;
   const SolidBlock& block;
-  SolidSlot<Real>* slots;
+  const SolidSlot<Real>* slots;
   int lane;  // first lane of the block that is worked on
   Bodies<L> i;
 
@@ -66,7 +66,7 @@ struct SolidLanes {
   Mask touching[kMaxSlots], kept[kMaxSlots];
 
   // The arrays are left as they are: only the block's slots are written and read.
-  SolidLanes(const ChunkTask<Real>& t, const SolidBlock& b, SolidSlot<Real>* s, int first_lane)
+  SolidLanes(const ChunkTask<Real>& t, const SolidBlock& b, const SolidSlot<Real>* s, int first_lane)
       : task(t),
         block(b),
         slots(s),
@@ -169,10 +169,9 @@ inline Vec<typename L::F> surface_velocity(const SolidLanes<L>& lanes, uint32_t 
   return {L::load(v[0]), L::load(v[1]), L::load(v[2])};
 }
 
-// The law on one slot: adds to force and torque of the lanes' particles, updates the history given.
-template <class L, class Traits>
-inline void solid_contact(const SolidLanes<L>& lanes, uint32_t s, ContactHistory<typename L::F>& history,
-                          Vec<typename L::F>& force, Vec<typename L::F>& torque) {
+// Slot s's contact as the law sees it.
+template <class L>
+inline Contact<typename L::F> solid_contact_of(const SolidLanes<L>& lanes, uint32_t s) {
   using F = typename L::F;
   const Bodies<L>& i = lanes.i;
   Contact<F> c;
@@ -184,9 +183,19 @@ inline void solid_contact(const SolidLanes<L>& lanes, uint32_t s, ContactHistory
   const F arm = i.radius - F(0.5) * c.overlap;
   c.arm_spin = arm * i.spin;
   c.rolling_spin = (arm / (i.radius - c.overlap)) * i.spin;
+  return c;
+}
+
+// The law on one slot: adds to force and torque of the lanes' particles, updates the history given.
+template <class L, class Traits>
+inline void solid_contact(const SolidLanes<L>& lanes, uint32_t s, ContactHistory<typename L::F>& history,
+                          Vec<typename L::F>& force, Vec<typename L::F>& torque) {
+  using F = typename L::F;
+  const Contact<F> c = solid_contact_of(lanes, s);
   const Reaction<F> r =
       hertz_mindlin<Traits::rolling>(c, solid_constants_of<L, Traits>(lanes, s), F(lanes.task.settings->history_dt),
                                      lanes.task.settings->limit_attraction, history);
+  const F arm = lanes.i.radius - F(0.5) * c.overlap;
   const Vec<F> zero{F(0), F(0), F(0)};
   force += select_vec(lanes.kept[s], r.force, zero);
   torque += select_vec(lanes.kept[s], fma(-arm, r.lever_torque, -r.rolling), zero);

@@ -6,6 +6,7 @@
 
 #include "kernels/parallel.h"
 #include "kernels/periodic.h"
+#include "kernels/touching.h"
 #include "runtime/case_physics.h"
 #include "runtime/timer.h"
 
@@ -38,7 +39,7 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
   for (int a = 0; a < 3; ++a)
     settings_.gravity[a] = gravity[a], settings_.period[a] = periodic_[a] ? lengths[a] : 0,
     settings_.inverse_period[a] = periodic_[a] ? 1 / lengths[a] : 0;
-  settings_.limit_attraction = c.contact.limit_attraction;
+  settings_.limit_attraction = c.contact.limit_attraction, settings_.profile = options.profile;
   materials_ = material_table<Real>(c);
   isa_ = std::is_same_v<Real, double> ? "reference" : options.isa.empty() ? available_isas().front() : options.isa;
   kernels_ = select_kernels<Real>(isa_, {c.contact.rolling, materials_.uniform_pairs && materials_.uniform_walls});
@@ -137,7 +138,9 @@ void Domain<Real>::step() {
     all.max_pair_overlap = std::max(all.max_pair_overlap, o.max_pair_overlap);
     all.max_solid_overlap = std::max(all.max_solid_overlap, o.max_solid_overlap);
     all.too_fast |= o.too_fast;
+    for (int part = 0; part < kStepParts; ++part) all.seconds[part] += o.seconds[part];
   }
+  add_profile(all);
   max_speed_ = all.max_speed;
   max_overlap_ = std::max(2 * all.max_pair_overlap, all.max_solid_overlap);
   const double way = kWayMargin * max_speed_ * settings_.dt;
@@ -151,12 +154,27 @@ void Domain<Real>::step() {
 }
 
 template <class Real>
+void Domain<Real>::add_profile(const ChunkOutcome& all) {
+  const auto of = [&](StepPart part) { return all.seconds[static_cast<int>(part)]; };
+  counters_.near_check_seconds += of(StepPart::near_check), counters_.pair_seconds += of(StepPart::pairs);
+  counters_.solid_seconds += of(StepPart::solids), counters_.integration_seconds += of(StepPart::integration);
+}
+
+// What one chunk's pass reads; the lists and the records that a step writes are not in it.
+template <class Real>
+ChunkTask<Real> Domain<Real>::chunk_task(size_t c, Real* rows) const {
+  return {now_.data(), nullptr,     chunk_begin(c),          chunk_end(c),         count_,
+          nullptr,     &materials_, tables_.segments.view(), tables_.quads.view(), tables_.revolutions.view(),
+          &settings_,  rows};
+}
+
+template <class Real>
 void Domain<Real>::advance_chunks() {
   parallel_for(chunks(), [&](size_t c) {
     alignas(64) thread_local Real rows[(kChunk + 1) * 8];
-    outcomes_[c] =
-        kernels_.step({now_.data(), next_.data(), chunk_begin(c), chunk_end(c), count_, &contacts_[c], &materials_,
-                       tables_.segments.view(), tables_.quads.view(), tables_.revolutions.view(), &settings_, rows});
+    ChunkTask<Real> task = chunk_task(c, rows);
+    task.new_particles = next_.data(), task.contacts = &contacts_[c];
+    outcomes_[c] = kernels_.step(task);
   });
   now_.swap(next_);
 }
@@ -231,6 +249,23 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
     for (uint32_t k = 0; k < contacts_[c].pairs; ++k) look(contacts_[c].pair_i(k), contacts_[c].pair_j(k));
     for (const NearPair& n : contacts_[c].near) look(n.i, n.j);
   }
+  return result;
+}
+
+template <class Real>
+std::vector<ContactState> Domain<Real>::contacts() const {
+  if (!lists_valid_) return {};
+  std::vector<std::vector<ContactState>> found(contacts_.size());
+  parallel_for(found.size(), [&](size_t c) {
+    visit_touching<Real>(chunk_task(c, nullptr), contacts_[c], [&](const TouchingContact& t) {
+      const bool solid = t.skeleton >= 0;
+      if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
+      found[c].push_back(
+          {t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force, t.slip});
+    });
+  });
+  std::vector<ContactState> result;
+  for (const auto& part : found) result.insert(result.end(), part.begin(), part.end());
   return result;
 }
 

@@ -47,6 +47,7 @@ class Domain final : public Engine {
   std::vector<ParticleState> particles() const override;
   uint64_t state_hash() const override;
   std::vector<TouchingPair> touching_pairs() const override;
+  std::vector<ContactState> contacts() const override;
 
  private:
   uint32_t chunks() const { return (count_ + chunk_size_ - 1) / chunk_size_; }
@@ -70,7 +71,9 @@ class Domain final : public Engine {
   void search_pairs();
   void search_solids();
 
+  ChunkTask<Real> chunk_task(size_t c, Real* rows) const;
   void advance_chunks();
+  void add_profile(const ChunkOutcome& all);
 
   // runtime/domain_watch.cpp
   [[noreturn]] void fail_step(const ChunkOutcome& outcome) const;

@@ -30,6 +30,18 @@ struct ParticleState {
   uint64_t id = 0;  // given by the engine at insertion
 };
 
+// A contact as the outside sees it.
+struct ContactState {
+  size_t i = 0;             // index into particles()
+  size_t j = 0;             // the other particle's, or the index of a primitive of Case::solid
+  bool with_solid = false;  // j is a primitive
+  double overlap = 0;       // m
+  Vec3 normal{};            // unit, from j to i
+  Vec3 point{};             // m; of a periodic pair beside i
+  Vec3 force{};             // N, on i; -force on j
+  Vec3 slip{};              // m/s, tangential velocity of i relative to j at the contact
+};
+
 // The run cannot go on: what happened, where, and what to change.
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -41,6 +53,8 @@ struct EngineCounters {
   uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, inserted = 0, removed = 0;
   std::vector<double> removed_mass;  // kg, by what the removal rule said
   double step_seconds = 0, history_seconds = 0, sort_seconds = 0, pair_search_seconds = 0, solid_search_seconds = 0;
+  // Of all threads together, only when EngineOptions::profile is set.
+  double near_check_seconds = 0, pair_seconds = 0, solid_seconds = 0, integration_seconds = 0;
 
   template <class Visit>
   static void for_each_field(const Visit& visit) {
@@ -52,6 +66,9 @@ struct EngineCounters {
     visit("sort_seconds", &EngineCounters::sort_seconds);
     visit("pair_search_seconds", &EngineCounters::pair_search_seconds);
     visit("solid_search_seconds", &EngineCounters::solid_search_seconds);
+    visit("near_check_seconds", &EngineCounters::near_check_seconds);
+    visit("pair_seconds", &EngineCounters::pair_seconds), visit("solid_seconds", &EngineCounters::solid_seconds);
+    visit("integration_seconds", &EngineCounters::integration_seconds);
   }
 };
 
@@ -59,6 +76,7 @@ struct EngineOptions {
   std::string isa;                       // empty: the best available
   bool brute_force_solid = false;        // the oracle's twin of the Embree index
   double skin = 0;                       // m; 0: from speeds and sizes
+  bool profile = false;                  // time the parts of the step
   uint64_t list_check_interval = 20000;  // steps between proofs that no contact is missing from the lists; 0: none
 };
 
@@ -105,6 +123,10 @@ class Engine {
     double overlap;
   };
   virtual std::vector<TouchingPair> touching_pairs() const = 0;
+
+  // Every contact that touches now, each once, with the force that the next step will apply; nothing between an
+  // insertion or opening of walls and the next step. The same list for any number of threads.
+  virtual std::vector<ContactState> contacts() const = 0;
 };
 
 std::unique_ptr<Engine> make_engine(const Case& c, const EngineOptions& options = {});

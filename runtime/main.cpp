@@ -33,6 +33,7 @@ struct Arguments {
   double checkpoint_every = 0;  // s; 0: not given
   bool resume = false;
   bool force_memory = false;
+  bool profile = false;
 };
 
 // results/<case>, or the next of results/<case>-2, -3, ... that is free: nothing is overwritten.
@@ -60,6 +61,7 @@ int run(const Arguments& a) {
   options.threads = a.threads;
   options.engine.isa = a.isa;
   options.engine.list_check_interval = a.check_lists;
+  options.engine.profile = a.profile;
   options.ignore_memory = a.force_memory;
   options.show_progress = isatty(STDERR_FILENO);
   options.stop = &stop_requested;
@@ -70,6 +72,7 @@ int run(const Arguments& a) {
   for (const std::string& warning : scree::time_step_warnings(c)) fmt::print(stderr, "scree: warning: {}\n", warning);
 
   const scree::RunResult result = scree::run_case(c, options);
+  fmt::print("{}", result.profile);
   if (result.steady)
     fmt::print("steady mass flow rate {:.3f} +- {:.3f} g/s, from {:.3f} s to {:.3f} s\n", 1e3 * result.steady->rate,
                1e3 * result.steady->standard_error, result.steady->from, result.steady->to);
@@ -134,6 +137,7 @@ void add_run_options(CLI::App& command, Arguments& a) {
       .add_option("--checkpoint-every", a.checkpoint_every,
                   "wall-clock seconds between checkpoints (default: the case's checkpoint.interval, 600)")
       ->check(CLI::PositiveNumber);
+  command.add_flag("--profile", a.profile, "print at the end where the time went, part by part of the step");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "runtime/case_size.h"
 #include "runtime/case_writer.h"
 #include "runtime/memory.h"
+#include "runtime/profile.h"
 #include "runtime/run_folder.h"
 #include "runtime/stages.h"
 #include "runtime/time_scales.h"
@@ -67,6 +68,8 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
                            {"particles", r.particles}});
   j["checkpoints"] = {{"written", simulation.checkpoints_written()}, {"seconds", simulation.checkpoint_seconds()}};
   j["resumed_from"] = simulation.resumed_from().empty() ? nlohmann::json() : nlohmann::json(simulation.resumed_from());
+  for (const auto& o : simulation.observers())
+    if (const nlohmann::json own = o->summary(); !own.is_null()) j[o->name()] = own;
   j["wall_seconds"] = {{"step", k.step_seconds},
                        {"history", k.history_seconds},
                        {"sort", k.sort_seconds},
@@ -184,6 +187,12 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     result.checkpoint = good.front().string();
   try {
     result.steady = simulation->steady();
+    simulation->finish_observers();
+    if (options.engine.profile) {
+      const EngineCounters& k = simulation->engine().counters();
+      result.profile = profile_table(profile_of(k, thread_count(), simulation->wall_seconds()), k.particle_steps);
+      log->info("where the time went:\n{}", result.profile);
+    }
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
     if (failed_at)
       write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine().particles(), *failed_at,

@@ -14,6 +14,7 @@
 #include "runtime/case_physics.h"
 #include "runtime/checkpoint.h"
 #include "runtime/csv_particles.h"
+#include "runtime/observer.h"
 #include "runtime/placement.h"
 #include "runtime/progress.h"
 #include "runtime/results.h"
@@ -51,6 +52,8 @@ class Simulation {
         return -1;
       });
     steps_per_sample_ = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(c.output.interval / engine_->dt())));
+    observers_ = make_observers(c, options.out, engine_->dt());
+    plan_looks();
   }
 
   // From the beginning, or from what load() brought.
@@ -64,6 +67,8 @@ class Simulation {
       StageRecord& record = state_.records.back();
       record.end = engine_->time(), record.particles = engine_->count();
       log_->info("stage '{}' ended at t = {:.6g} s with {} particles", record.name, record.end, record.particles);
+      for (const auto& o : observers_)
+        if (o->schedule().stage_ends()) o->look(view());
       ++state_.stage, state_.begun = false;
       pour_.reset();
       write_checkpoint();
@@ -91,12 +96,21 @@ class Simulation {
         if (const auto* open = std::get_if<OpenStage>(&case_.stages[k].action)) take_out(walls_of(*open));
       const auto* pour = state_.begun ? std::get_if<PourStage>(&case_.stages[state_.stage].action) : nullptr;
       if (pour) in.load("pour", make_pour(*pour));
+      for (const auto& o : observers_) o->load(in, "observers/" + o->name());
     });
+    plan_looks();
     wall_before_ = state_.wall_seconds;
     resumed_from_ = checkpoint.filename().string();
   }
 
+  // Whatever the end: what the observers have becomes complete.
+  void finish_observers() {
+    if (state_.records.empty()) return;
+    for (const auto& o : observers_) o->finish(view());
+  }
+
   const Engine& engine() const { return *engine_; }
+  const std::vector<std::unique_ptr<Observer>>& observers() const { return observers_; }
   const RunState& state() const { return state_; }
   const std::string& resumed_from() const { return resumed_from_; }
   int checkpoints_written() const { return checkpoints_written_; }
@@ -158,7 +172,21 @@ class Simulation {
       }
       engine_->step();
       if (engine_->counters().steps % steps_per_sample_ == 0) sample();
+      if (engine_->counters().steps >= next_look_) let_observers_look();
     }
+  }
+
+  RunView view() const { return {case_, *engine_, solid_, record().name, record().start, options_.out, *log_}; }
+
+  void plan_looks() {
+    next_look_ = Schedule::kNever;
+    for (const auto& o : observers_) next_look_ = std::min(next_look_, o->schedule().after(engine_->counters().steps));
+  }
+  void let_observers_look() {
+    const uint64_t step = engine_->counters().steps;
+    for (const auto& o : observers_)
+      if (o->schedule().after(step - 1) == step) o->look(view());
+    plan_looks();
   }
 
   void run_stage(const std::string& name, const FillStage& s) {
@@ -331,6 +359,7 @@ class Simulation {
       out.save("run", state_);
       engine_->save(out);
       if (pour_) out.save("pour", *pour_);
+      for (const auto& o : observers_) o->save(out, "observers/" + o->name());
     };
   }
   void note(const Checkpoints::Written& w) {
@@ -366,6 +395,8 @@ class Simulation {
   std::unique_ptr<Pour> pour_;  // while one goes on
   uint64_t steps_per_sample_ = 1;
   RunState state_;
+  std::vector<std::unique_ptr<Observer>> observers_;
+  uint64_t next_look_ = Schedule::kNever;
   Checkpoints checkpoints_;
   std::string resumed_from_;
   int checkpoints_written_ = 0;
