@@ -35,7 +35,6 @@ struct CameraSubject {
   Bounds region{};               // what front, side and top frame
   std::optional<Vec3> junction;  // the node nearest the lattice's centre
   double junction_size = 0;      // m, of what is round it: a few fibres
-  double fibre_radius = 0;       // m
 };
 
 // Throws CaseError for an unknown name (listing the known), a free camera without position or target, or one that looks

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kFacets = 96;             // that a surface of revolution is drawn with
 constexpr double kSmooth = 0.9;         // cosine: facets that meet flatter than this show no edge
-constexpr double kJunctionFibres = 11;  // what is round a junction, in fibre diameters
-constexpr double kJunctionGrains = 26;  // and at least, in grains
+constexpr double kJunctionFibres = 9;   // what is round a junction, in fibre diameters
+constexpr double kJunctionGrains = 20;  // and at least, in grains
 
 Vec3 normal_of(const Quad& q) {
   const Vec3 n = cross(q.corners[2] - q.corners[0], q.corners[3] - q.corners[1]);
@@ -116,8 +116,7 @@ CameraSubject camera_subject(const Case& c, const Bounds& region) {
   subject.region = region;
   if (c.fibres.count > 0)
     subject.junction = junction_near(c.solid, 0.5 * (c.fibres.section.min + c.fibres.section.max));
-  subject.fibre_radius = 0.5 * mean_fibre_diameter(c.solid);
-  subject.junction_size = std::max(2 * kJunctionFibres * subject.fibre_radius,
+  subject.junction_size = std::max(kJunctionFibres * mean_fibre_diameter(c.solid),
                                    c.kinds.empty() ? 0 : kJunctionGrains * 2 * largest_radius(c));
   return subject;
 }

@@ -23,23 +23,32 @@ std::vector<double> numbers_in(const std::string& text) {
   return numbers;
 }
 
-// Without a cut of its own a junction would hide behind the grains before it: they go, its fibres stay whole.
-std::vector<CutPlane> cuts_of(const PictureRequest& request, const Camera& camera, const CameraSubject& subject,
-                              const Bounds& region) {
+std::vector<CutPlane> cuts_of(const PictureRequest& request, const Bounds& region) {
   std::vector<CutPlane> cuts;
   for (const std::string& text : request.cuts) cuts.push_back(parse_cut(text, region));
-  if (request.camera.name == "junction" && cuts.empty())
-    cuts.push_back({{0, -1, 0}, subject.fibre_radius - camera.target.y});
   return cuts;
 }
 
-Scene scene_of(const ParticleFrame& frame, const ColourScale& scale, const std::vector<double>& values) {
-  Scene scene;
+void add_particles(Scene& scene, const ParticleFrame& frame, const ColourScale& scale,
+                   const std::vector<double>& values) {
   for (size_t k = 0; k < frame.count(); ++k) {
     scene.balls.push_back({frame.positions[k], frame.radii[k]});
     scene.ball_colours.push_back(to_linear(colour_of(scale, values[k])));
   }
-  return scene;
+}
+
+// A junction would hide behind the grains before it. Those before its middle go, the others stay whole; the fibres that
+// come towards the eye are cut just before the grains that stay.
+void lay_bare(Scene& scene, const Vec3& junction) {
+  size_t kept = 0;
+  double largest = 0;
+  for (size_t k = 0; k < scene.balls.size(); ++k) {
+    if (scene.balls[k].centre.y < junction.y) continue;
+    largest = std::max(largest, scene.balls[k].radius);
+    scene.balls[kept] = scene.balls[k], scene.ball_colours[kept++] = scene.ball_colours[k];
+  }
+  scene.balls.resize(kept), scene.ball_colours.resize(kept);
+  scene.cuts.push_back({{0, -1, 0}, largest - junction.y});
 }
 
 }  // namespace
@@ -98,10 +107,12 @@ Image draw_picture(const Case& c, const ParticleFrame& frame, const PictureReque
   const PictureSize& size = request.size;
   const CameraSubject subject = camera_subject(c, region);
   const Camera camera = make_camera(request.camera, subject, static_cast<double>(size.width) / size.height);
-  Scene scene = scene_of(frame, scale, values);
+  Scene scene;
+  add_particles(scene, frame, scale, values);
   add_solid(scene, c.solid, opened);
   scene.wall_style = request.walls;
-  scene.cuts = cuts_of(request, camera, subject, region);
+  scene.cuts = cuts_of(request, region);
+  if (request.camera.name == "junction" && scene.cuts.empty()) lay_bare(scene, camera.target);
   Image image = render(scene, camera, size, request.samples);
   if (request.annotations) annotate(image, {scale, scale_bar(camera, size.width, size.height), c.title, frame.time});
   return image;

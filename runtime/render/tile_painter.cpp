@@ -14,7 +14,7 @@ constexpr float kBounced = 0.2f;       // of the ambient light, where it is kept
 constexpr float kLightSpread = 0.16f;  // radius of the key light as seen from the scene, rad: the softness of shadows
 constexpr float kGround = 0.55f;       // light from below, of that from above
 constexpr float kReachInBalls = 6, kReachInFibres = 4;  // kReach, in radii
-constexpr Rgb kMetal{0.47f, 0.48f, 0.50f};
+constexpr Rgb kMetal{0.47f, 0.48f, 0.50f}, kCutMetal{0.17f, 0.18f, 0.20f};
 constexpr float kMetalShine = 0.35f, kBallShine = 0.04f, kShininess = 30;
 // Walls and their edges: how much of the colour behind they replace, and by what.
 constexpr Rgb kGlass{0.45f, 0.60f, 0.75f}, kEdge{0.10f, 0.14f, 0.20f};
@@ -183,6 +183,7 @@ void TilePainter::find_surfaces(Tile& tile) const {
       if (const auto body = solid_->containing(point_at(ray, ray.near))) {  // the cut's flat face
         surface = surface_at(ray, *body, ray.near);
         surface.normal = tile.cut_by[k]->normal;
+        if (body->shape == Shape::capsule) surface.colour = kCutMetal, surface.shine = 0;
         surface.sample = k, ray.far = ray.near;
         tile.surfaces.push_back(surface);
         continue;
