@@ -11,6 +11,7 @@
 
 #include "geometry/solid.h"
 #include "kernels/contact_law.h"
+#include "runtime/render/picture_request.h"
 
 namespace scree {
 
@@ -135,6 +136,7 @@ struct OutputSettings {
   double steady_from = 0,
          steady_to = 0;  // s after the drain began: window of the steady flow; 0, 0: found automatically
   bool final_vtk = true;
+  std::vector<RunPicture> pictures;  // runtime/render/run_pictures.h
 };
 
 struct CheckpointSettings {

@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-constexpr std::array kHarmless{"title", "output.final_vtk", "checkpoint"};
+constexpr std::array kHarmless{"title", "output.final_vtk", "output.picture", "checkpoint"};
 
 using Difference = std::optional<std::string>;
 

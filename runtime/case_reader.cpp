@@ -11,6 +11,7 @@
 #include "runtime/case_sections.h"
 #include "runtime/case_size.h"
 #include "runtime/csv_table.h"
+#include "runtime/render/run_pictures.h"
 
 namespace scree {
 namespace {
@@ -83,6 +84,7 @@ void read_output(TableReader t, OutputSettings& output) {
     output.steady_from = window[0];
     output.steady_to = window[1];
   }
+  read_pictures(t, output.pictures);
   t.finish();
 }
 

@@ -43,9 +43,9 @@ double distance_for(double height, double field_of_view_deg) {
 Camera junction_camera(const CameraRequest& request, const CameraSubject& subject, double aspect) {
   const std::optional<Vec3> point = request.point ? request.point : subject.junction;
   if (!point)
-    throw CaseError({"camera 'junction'"},
-                    "the case has no fibres that meet, so there is no junction to look at: give a point, or use "
-                    "another camera");
+    throw std::invalid_argument(
+        "camera 'junction': the case has no fibres that meet, so there is no junction to look at: give a point, or use "
+        "another camera");
   const double elevation = radians(kJunctionElevation);
   Camera camera = looking({0.25, std::cos(elevation), -std::sin(elevation)}, {0, 0, 1});
   camera.target = *point;
@@ -55,12 +55,13 @@ Camera junction_camera(const CameraRequest& request, const CameraSubject& subjec
 }
 
 Camera free_camera(const CameraRequest& request, double aspect) {
-  if (!request.position || !request.target) throw CaseError({"camera 'free'"}, "needs a position and a target, m");
+  if (!request.position || !request.target)
+    throw std::invalid_argument("camera 'free' needs a position and a target, m");
   const Vec3 line = *request.target - *request.position;
   const double distance = norm(line);
   if (!(distance > 0) || !(norm(cross(line, request.up)) > 1e-9 * distance * norm(request.up)))
-    throw CaseError({"camera 'free'"},
-                    "position and target must differ, and the line between them must not be along `up`");
+    throw std::invalid_argument(
+        "camera 'free': position and target must differ, and the line between them must not be along `up`");
   Camera camera = looking(line, request.up);
   camera.target = *request.target;
   if (request.width > 0) {
@@ -85,7 +86,7 @@ Camera make_camera(const CameraRequest& request, const CameraSubject& subject, d
   if (request.name == "top") return framed(looking({0, 0, -1}, {0, 1, 0}), subject.region, aspect);
   if (request.name == "junction") return junction_camera(request, subject, aspect);
   if (request.name == "free") return free_camera(request, aspect);
-  fail_unknown_name("--camera", "camera", request.name, camera_names());
+  fail_unknown_name("camera", request.name, camera_names());
 }
 
 Projected project(const Camera& camera, const Vec3& x) {

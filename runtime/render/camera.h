@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/solid.h"
+#include "runtime/render/picture_request.h"
 
 namespace scree {
 
@@ -20,25 +21,14 @@ struct Camera {
 // The names, in the order they are listed in messages.
 const std::vector<std::string>& camera_names();
 
-// What a user asks for.
-struct CameraRequest {
-  std::string name = "front";
-  std::optional<Vec3> point;  // junction: look here instead of at the node nearest the lattice's centre
-  // free:
-  std::optional<Vec3> position, target;
-  Vec3 up{0, 0, 1};
-  double field_of_view_deg = 30;  // from the lower to the upper edge; not with width
-  double width = 0;               // m; > 0: orthographic
-};
-
 struct CameraSubject {
   Bounds region{};               // what front, side and top frame
   std::optional<Vec3> junction;  // the node nearest the lattice's centre
   double junction_size = 0;      // m, of what is round it: a few fibres
 };
 
-// Throws CaseError for an unknown name (listing the known), a free camera without position or target, or one that looks
-// along `up`, a junction without fibres. `aspect` is the picture's width / height.
+// Throws std::invalid_argument for an unknown name (listing the known), a free camera without position or target, or
+// one that looks along `up`, a junction without fibres. `aspect` is the picture's width / height.
 Camera make_camera(const CameraRequest& request, const CameraSubject& subject, double aspect);
 
 // World to picture: x to the right and y down, in picture heights from the upper left corner of the square picture

@@ -88,9 +88,8 @@ double mean_fibre_diameter(const Solid& solid) {
 
 }  // namespace
 
-void add_solid(Scene& scene, const Solid& solid, const std::vector<uint32_t>& opened) {
+void add_solid(Scene& scene, const Solid& solid) {
   for (const Primitive& p : solid.primitives) {
-    if (std::ranges::find(opened, p.wall) != opened.end()) continue;
     if (const auto* axis = std::get_if<Segment>(&p.skeleton)) scene.fibres.push_back({*axis, p.radius});
     if (const auto* quad = std::get_if<Quad>(&p.skeleton)) scene.walls.push_back(*quad);
     if (const auto* surface = std::get_if<Revolution>(&p.skeleton)) {
@@ -105,6 +104,11 @@ Bounds region_of_interest(const Case& c, const ParticleFrame& now) {
   Bounds bounds = empty_bounds();
   if (c.fibres.count > 0) bounds = united(bounds, inflated(c.fibres.section, 0.5 * c.fibres.diameter));
   for (const Region& region : c.regions) bounds = united(bounds, bounds_of(region));
+  if (bounds.min.x <= bounds.max.x)
+    for (const Outlet& outlet : c.outlets) {
+      const Vec3 removed = outlet.point + outlet.remove_beyond * outlet.direction;
+      bounds = united(bounds, {removed, removed});
+    }
   if (!(bounds.min.x <= bounds.max.x))
     for (size_t k = 0; k < now.count(); ++k)
       bounds = united(bounds, inflated({now.positions[k], now.positions[k]}, now.radii[k]));

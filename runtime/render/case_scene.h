@@ -8,11 +8,11 @@
 
 namespace scree {
 
-// Fibres, walls and the walls' edges, without the walls in `opened` (indices in Solid::walls).
-void add_solid(Scene& scene, const Solid& solid, const std::vector<uint32_t>& opened = {});
+// Fibres, walls and the walls' edges.
+void add_solid(Scene& scene, const Solid& solid);
 
-// Where the particles of a case are on their way: its fibres and the regions they are inserted in; of a case without
-// either, where they are now. In every picture of a run the same.
+// Where the particles of a case are on their way: its fibres, the regions they are inserted in and where they are
+// taken out; of a case without fibres and regions, where they are now. In every picture of a run the same.
 Bounds region_of_interest(const Case& c, const ParticleFrame& now);
 
 // The region, and the junction of fibres nearest the middle of the fibres.

@@ -77,11 +77,14 @@ std::vector<Opening> openings_of(const Case& c, const std::filesystem::path& fol
   return openings;
 }
 
-std::vector<uint32_t> opened_by(const std::vector<Opening>& openings, double time) {
-  std::vector<uint32_t> walls;
+Solid solid_at(const Case& c, const std::vector<Opening>& openings, double time) {
+  Solid solid = c.solid;
   for (const Opening& opening : openings)
-    if (!(time < opening.time)) walls.insert(walls.end(), opening.walls.begin(), opening.walls.end());
-  return walls;
+    if (!(time < opening.time))
+      std::erase_if(solid.primitives, [&](const Primitive& p) {
+        return std::ranges::find(opening.walls, p.wall) != opening.walls.end();
+      });
+  return solid;
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -126,7 +129,8 @@ void render_folder(const RenderArguments& a, const std::function<void(const std:
     if (a.film) make_folder(film);
     if (a.film && !request.range) request.range = range_of_film(c, frames, request.colour);
     for (size_t k = 0; k < frames.size(); ++k) {
-      const Image image = draw_picture(c, read_particle_frame(frames[k]), request, opened_by(openings, frames[k].time));
+      const Image image =
+          draw_picture(c, read_particle_frame(frames[k]), request, solid_at(c, openings, frames[k].time));
       const std::filesystem::path path = one_file ? out
                                          : a.film ? film / film_frame_name(k)
                                                   : out / picture_name(request, frames[k].time);

@@ -65,9 +65,8 @@ PictureSize parse_size(const std::string& text) {
     size = {side(std::string_view(text).substr(0, cross)), side(std::string_view(text).substr(cross + 1))};
   const auto allowed = [](int pixels) { return pixels >= kLeastSide && pixels <= kMostSide; };
   if (!allowed(size.width) || !allowed(size.height))
-    throw CaseError({"--size"},
-                    fmt::format("'{}' is not a size, must be WIDTHxHEIGHT, each {} to {} pixels, as 1920x1080", text,
-                                kLeastSide, kMostSide));
+    throw std::invalid_argument(fmt::format(
+        "'{}' is not a size, must be WIDTHxHEIGHT, each {} to {} pixels, as 1920x1080", text, kLeastSide, kMostSide));
   return size;
 }
 
@@ -76,7 +75,7 @@ CutPlane parse_cut(const std::string& text, const Bounds& region) {
       "must be an axis, < or > and a coordinate in m, as \"y<0.002\" (cuts away where y is less), \"y<\" (at the "
       "middle), "
       "or \"NX,NY,NZ,D\" (cuts away where NX x + NY y + NZ z > D)";
-  const auto fail = [&] { throw CaseError({"--cut"}, fmt::format("'{}' is not a cut, {}", text, kForm)); };
+  const auto fail = [&] { throw std::invalid_argument(fmt::format("'{}' is not a cut, {}", text, kForm)); };
   const size_t axis = text.empty() ? 3 : text[0] - size_t{'x'};
   if (axis < 3 && text.size() >= 2 && (text[1] == '<' || text[1] == '>')) {
     const double sign = text[1] == '>' ? 1 : -1;
@@ -96,11 +95,10 @@ WallStyle parse_wall_style(const std::string& text) {
   const std::vector<std::string> names{"transparent", "faint", "hidden"};
   for (size_t k = 0; k < names.size(); ++k)
     if (text == names[k]) return static_cast<WallStyle>(k);
-  fail_unknown_name("--walls", "style", text, names);
+  fail_unknown_name("style of walls", text, names);
 }
 
-Image draw_picture(const Case& c, const ParticleFrame& frame, const PictureRequest& request,
-                   const std::vector<uint32_t>& opened) {
+Image draw_picture(const Case& c, const ParticleFrame& frame, const PictureRequest& request, const Solid& solid) {
   const std::vector<double> values = values_of(frame, request.colour);
   const ColourScale scale = colour_scale(c, request.colour, values, request.range);
   const Bounds region = region_of_interest(c, frame);
@@ -109,7 +107,7 @@ Image draw_picture(const Case& c, const ParticleFrame& frame, const PictureReque
   const Camera camera = make_camera(request.camera, subject, static_cast<double>(size.width) / size.height);
   Scene scene;
   add_particles(scene, frame, scale, values);
-  add_solid(scene, c.solid, opened);
+  add_solid(scene, solid);
   scene.wall_style = request.walls;
   scene.cuts = cuts_of(request, region);
   if (request.camera.name == "junction" && scene.cuts.empty()) lay_bare(scene, camera.target);

@@ -102,7 +102,7 @@ std::vector<double> values_of(const ParticleFrame& frame, const std::string& qua
       for (size_t k = 0; k < values.size(); ++k) values[k] = value_of(field, k, component);
       return values;
     }
-  fail_unknown_name("--colour", "quantity", quantity, quantities_of(frame));
+  fail_unknown_name("quantity", quantity, quantities_of(frame));
 }
 
 ColourScale colour_scale(const Case& c, const std::string& quantity, std::vector<double> values,

@@ -6,6 +6,7 @@
 #include "runtime/case.h"
 #include "runtime/render/colour_map.h"
 #include "runtime/render/particle_frame.h"
+#include "runtime/render/picture_request.h"
 
 namespace scree {
 
@@ -13,12 +14,9 @@ namespace scree {
 // vectors as force_x.
 std::vector<std::string> quantities_of(const ParticleFrame& frame);
 
-// One value for each particle, SI. A vector's is its length. Throws CaseError for an unknown name, listing the known.
+// One value for each particle, SI. A vector's is its length. Throws std::invalid_argument for an unknown name, listing
+// the known.
 std::vector<double> values_of(const ParticleFrame& frame, const std::string& quantity);
-
-struct ValueRange {
-  double min, max;
-};
 
 // The colours for these values: from zero to a round number that one value in a hundred exceeds, symmetric about zero
 // if some are negative, or the values' own range if they are all alike; `given` instead, if it is. Kinds have their

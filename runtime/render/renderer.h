@@ -7,12 +7,6 @@
 
 namespace scree {
 
-struct PictureSize {
-  int width = 1920, height = 1080;
-};
-
-inline constexpr int kDefaultSamples = 8;
-
 // 1 <= samples <= 64 a pixel. Throws std::invalid_argument for a body that cannot be drawn (geometry/ray_tracer.h).
 Image render(const Scene& scene, const Camera& camera, const PictureSize& size, int samples = kDefaultSamples);
 

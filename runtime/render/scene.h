@@ -5,6 +5,7 @@
 
 #include "geometry/ray_tracer.h"
 #include "runtime/render/image.h"
+#include "runtime/render/picture_request.h"
 
 namespace scree {
 
@@ -13,8 +14,6 @@ struct CutPlane {
   Vec3 normal;  // unit
   double offset;
 };
-
-enum class WallStyle { transparent, faint, hidden };
 
 struct Scene {
   std::vector<Ball> balls;

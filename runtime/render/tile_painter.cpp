@@ -89,12 +89,23 @@ struct TilePainter::Tile {
 };
 
 TilePainter::TilePainter(const Scene& scene, const Camera& camera, const PictureSize& size, int samples)
-    : scene_(scene), camera_(camera), size_(size), samples_(samples) {
+    : scene_(scene),
+      camera_(camera),
+      size_(size),
+      samples_(samples),
+      solid_tiles_(camera, size, kTile),
+      glass_tiles_(camera, size, kTile) {
+  for (const Ball& ball : scene.balls) solid_tiles_.add(ball);
+  for (const Capsule& fibre : scene.fibres) solid_tiles_.add(fibre);
+
   solid_ = make_embree_tracer({scene.balls, scene.fibres, {}});
   const double pixel = camera.height / size.height;
   if (scene.wall_style != WallStyle::hidden && !scene.walls.empty()) {
     const double edge = kEdgePixels * pixel * std::max(1.0, size.height / 1080.0);
-    glass_ = make_embree_tracer({{}, lines(scene.wall_edges, edge), scene.walls});
+    const std::vector<Capsule> edges = lines(scene.wall_edges, edge);
+    glass_ = make_embree_tracer({{}, edges, scene.walls});
+    for (const Capsule& line : edges) glass_tiles_.add(line);
+    for (const Quad& wall : scene.walls) glass_tiles_.add(wall);
     glass_shift_ = to_float(solid_->origin() - glass_->origin());
   }
   step_right_ = to_float(pixel * camera.right), step_down_ = to_float(-pixel * camera.up);
@@ -250,11 +261,15 @@ void TilePainter::lay_walls_over(Tile& tile) const {
 
 void TilePainter::paint(Image& image, int x0, int y0) const {
   Tile tile{x0, y0, std::min(kTile, size_.width - x0), std::min(kTile, size_.height - y0), {}, {}, {}, {}, {}};
+  const bool solid = solid_tiles_.at(x0, y0), glass = glass_ && glass_tiles_.at(x0, y0);
+  if (!solid && !glass) {
+    image.fill(x0, y0, x0 + tile.columns, y0 + tile.rows, to_srgb(kBackground));
+    return;
+  }
   cast(tile);
   tile.colours.assign(tile.rays.size(), kBackground);
-  find_surfaces(tile);
-  light(tile);
-  if (glass_) lay_walls_over(tile);
+  if (solid) find_surfaces(tile), light(tile);
+  if (glass) lay_walls_over(tile);
   for (int y = 0; y < tile.rows; ++y)
     for (int x = 0; x < tile.columns; ++x) {
       Rgb sum;

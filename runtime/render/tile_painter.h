@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "runtime/render/renderer.h"
+#include "runtime/render/tile_mask.h"
 
 namespace scree {
 
@@ -49,6 +50,7 @@ class TilePainter {
   Vec3f to_light_, light_u_, light_v_, sky_;
   Vec3f glass_shift_;  // from solid_'s coordinates to glass_'s
   std::vector<Cut> cuts_;
+  TileMask solid_tiles_, glass_tiles_;
   float reach_ = 0;  // m: how far the light from all round looks for what keeps it out
   float start_ = 0;  // m: shadow rays begin this far off the surface
 };

@@ -1,0 +1,142 @@
+#include "runtime/render/run_pictures.h"
+
+#include <chrono>
+
+#include "runtime/case_moments.h"
+#include "runtime/case_sections.h"
+#include "runtime/render/case_scene.h"
+#include "runtime/render/picture.h"
+
+namespace scree {
+
+namespace {
+
+constexpr const char* kRunSize = "1280x720";  // unless the case says otherwise: a run should not wait for pictures
+constexpr const char* kFromContacts[] = {"coordination", "force", "force_x", "force_y", "force_z"};
+
+// What touches each particle, and the sum of the forces on it.
+void add_contact_fields(ParticleFrame& frame, std::span<const ContactState> contacts) {
+  ParticleField coordination{"coordination_number", 1, std::vector<float>(frame.count())};
+  std::vector<Vec3> forces(frame.count());
+  for (const ContactState& c : contacts) {
+    coordination.values[c.i] += 1, forces[c.i] += c.force;
+    if (!c.with_solid) coordination.values[c.j] += 1, forces[c.j] -= c.force;
+  }
+  ParticleField force{"force", 3, {}};
+  for (const Vec3& f : forces)
+    for (const double x : {f.x, f.y, f.z}) force.values.push_back(static_cast<float>(x));
+  frame.fields.push_back(std::move(coordination)), frame.fields.push_back(std::move(force));
+}
+
+ParticleFrame frame_now(const Engine& engine, const std::string& quantity) {
+  ParticleFrame frame = frame_of(engine.particles(), engine.time());
+  if (std::ranges::find(kFromContacts, quantity) != std::end(kFromContacts))
+    add_contact_fields(frame, engine.contacts());
+  return frame;
+}
+
+std::vector<std::string> run_quantities() {
+  ParticleFrame none = frame_of({}, 0);
+  add_contact_fields(none, {});
+  return quantities_of(none);
+}
+
+std::string one_of_names(TableReader& t, const char* key, const std::string& what, const char* fallback,
+                         const std::vector<std::string>& names) {
+  t.text(key, fallback);
+  return names[t.index(key, what, names)];
+}
+
+void read_camera(TableReader& t, CameraRequest& camera) {
+  camera.name = one_of_names(t, "camera", "camera", "front", camera_names());
+  if (camera.name == "junction" && t.has("point")) camera.point = t.vec3("point", kPosition);
+  if (camera.name != "free") return;
+  camera.position = t.vec3("position", kPosition), camera.target = t.vec3("target", kPosition);
+  camera.up = t.vec3("up", Range{}, camera.up);
+  if (t.at_most_one_of({"field_of_view", "width"}) == "width")
+    camera.width = t.number("width", kLength);
+  else
+    camera.field_of_view_deg = t.number("field_of_view", between(1, 150, "degrees"), camera.field_of_view_deg);
+}
+
+// What the command line refuses becomes an error of the key.
+auto checked(const TableReader& t, const std::string& key, const auto& make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    t.fail(key, error.what());
+  }
+}
+
+RunPicture read_picture(TableReader& t, const std::vector<RunPicture>& before) {
+  RunPicture picture;
+  PictureRequest& request = picture.request;
+  picture.name = new_name(t, "picture", names_of(before));
+  read_camera(t, request.camera);
+  request.colour = one_of_names(t, "colour", "quantity", "speed", run_quantities());
+  if (t.has("range")) {
+    const std::vector<double> range = t.numbers("range", Range{}, 2);
+    if (range[1] <= range[0]) t.fail("range", fmt::format("{} must be [least, most]", t.shown("range")));
+    request.range = ValueRange{range[0], range[1]};
+  }
+  if (t.has("cut")) request.cuts = t.texts("cut");
+  for (const std::string& cut : request.cuts) checked(t, "cut", [&] { return parse_cut(cut, {}); });
+  if (request.camera.name == "free") checked(t, "camera", [&] { return make_camera(request.camera, {}, 1); });
+  request.walls = t.choice<WallStyle>(
+      "walls", {{"transparent", WallStyle::transparent}, {"faint", WallStyle::faint}, {"hidden", WallStyle::hidden}},
+      "transparent");
+  t.text("size", kRunSize);
+  request.size = checked(t, "size", [&] { return parse_size(t.text("size")); });
+  request.samples = static_cast<int>(t.whole("samples", between(1, 64, "rays a pixel"), kDefaultSamples));
+  picture.moments = read_moments(t);
+  t.finish();
+  return picture;
+}
+
+class PictureObserver final : public Observer {
+ public:
+  PictureObserver(const Case& c, const RunPicture& picture, double dt)
+      : picture_(picture), schedule_(picture.moments, dt) {
+    try {
+      make_camera(picture.request.camera, camera_subject(c, c.domain), 1);
+    } catch (const std::invalid_argument& error) {
+      throw CaseError({c.source}, fmt::format("output.picture.{}: {}", picture.name, error.what()));
+    }
+  }
+
+  std::string name() const override { return "picture_" + picture_.name; }
+  const Schedule& schedule() const override { return schedule_; }
+
+  void look(const RunView& run) override {
+    const auto start = std::chrono::steady_clock::now();
+    const std::filesystem::path folder = run.out / "pictures";
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw RunError(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
+    const ParticleFrame frame = frame_now(run.engine, picture_.request.colour);
+    write_png(folder / fmt::format("{}_{:.6f}.png", picture_.name, run.engine.time()),
+              draw_picture(run.c, frame, picture_.request, run.solid));
+    ++drawn_;
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  nlohmann::json summary() const override { return {{"pictures", drawn_}, {"seconds", seconds_}}; }
+
+ private:
+  RunPicture picture_;
+  Schedule schedule_;
+  uint64_t drawn_ = 0;
+  double seconds_ = 0;
+};
+
+}  // namespace
+
+void read_pictures(TableReader& output, std::vector<RunPicture>& pictures) {
+  for (TableReader& t : output.tables("picture")) pictures.push_back(read_picture(t, pictures));
+}
+
+std::unique_ptr<Observer> make_picture_observer(const Case& c, const RunPicture& picture, double dt) {
+  return std::make_unique<PictureObserver>(c, picture, dt);
+}
+
+}  // namespace scree

@@ -1,0 +1,18 @@
+// [[output.picture]]: pictures that a run draws of itself while it goes on, as DIR/pictures/NAME_TIME.png.
+#pragma once
+
+#include "runtime/case_table.h"
+#include "runtime/observer.h"
+
+namespace scree {
+
+// Reads every [[output.picture]] of `output`: name, camera, colour, range, cut, walls, size, samples, what a free
+// camera or a junction needs, and its moments (runtime/case_moments.h). Names of cameras and quantities are checked
+// here.
+void read_pictures(TableReader& output, std::vector<RunPicture>& pictures);
+
+// Draws it at its moments. Throws CaseError for a junction camera in a case without one; a file that cannot be written
+// is a RunError of look().
+std::unique_ptr<Observer> make_picture_observer(const Case& c, const RunPicture& picture, double dt);
+
+}  // namespace scree
