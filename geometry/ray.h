@@ -56,38 +56,42 @@ inline Chord chord(const BallBody& ball, const Ray& ray) {
   return {middle - half, middle + half};
 }
 
-// Of the cylinder between the two end planes, without its rounded ends.
-inline Chord barrel_chord(const CapsuleBody& capsule, const Ray& ray) {
+// Of the cylinder round the capsule's axis that has no ends.
+inline Chord endless_chord(const CapsuleBody& capsule, const Ray& ray) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const auto across = [&](const Vec3f& v) { return v - dot(v, capsule.axis) * capsule.axis; };
   const Vec3f direction = across(ray.direction), origin = across(ray.origin - capsule.a);
-  const float rate2 = dot(direction, direction);
-  Chord inside{-infinity, infinity};
-  if (rate2 > 1e-12f) {
-    const float middle = -dot(origin, direction) / rate2;
-    const Vec3f offset = origin + middle * direction;
-    const float half2 = (capsule.radius * capsule.radius - dot(offset, offset)) / rate2;
-    if (!(half2 >= 0)) return {};
-    inside = {middle - std::sqrt(half2), middle + std::sqrt(half2)};
-  } else if (dot(origin, origin) > capsule.radius * capsule.radius) {
-    return {};  // along the axis, outside
-  }
-  const float start = dot(ray.origin - capsule.a, capsule.axis), speed = dot(ray.direction, capsule.axis);
-  if (std::abs(speed) > 1e-12f) {
-    const float t0 = -start / speed, t1 = (capsule.length - start) / speed;
-    inside = {std::max(inside.in, std::min(t0, t1)), std::min(inside.out, std::max(t0, t1))};
-  } else if (start < 0 || start > capsule.length) {
-    return {};
-  }
-  return inside.in <= inside.out ? inside : Chord{};
+  const float rate2 = dot(direction, direction), radius2 = capsule.radius * capsule.radius;
+  if (rate2 <= 1e-12f) return dot(origin, origin) <= radius2 ? Chord{-infinity, infinity} : Chord{};  // along the axis
+  const float middle = -dot(origin, direction) / rate2;
+  const Vec3f offset = origin + middle * direction;
+  const float half2 = (radius2 - dot(offset, offset)) / rate2;
+  if (!(half2 >= 0)) return {};
+  return {middle - std::sqrt(half2), middle + std::sqrt(half2)};
 }
 
-// The capsule is the barrel and two balls, and convex: its chord is the hull of theirs.
+// Between the planes through the ends of the axis.
+inline Chord slab_chord(const CapsuleBody& capsule, const Ray& ray) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const float start = dot(ray.origin - capsule.a, capsule.axis), speed = dot(ray.direction, capsule.axis);
+  if (std::abs(speed) <= 1e-12f) return start >= 0 && start <= capsule.length ? Chord{-infinity, infinity} : Chord{};
+  const float t0 = -start / speed, t1 = (capsule.length - start) / speed;
+  return {std::min(t0, t1), std::max(t0, t1)};
+}
+
+// The capsule is a barrel and two balls, and convex: its chord is the hull of theirs. Most rays that are asked about
+// miss the endless cylinder, which all three lie in.
 inline Chord chord(const CapsuleBody& capsule, const Ray& ray) {
-  const Chord parts[] = {barrel_chord(capsule, ray), chord(BallBody{capsule.a, capsule.radius}, ray),
-                         chord(BallBody{capsule.a + capsule.length * capsule.axis, capsule.radius}, ray)};
-  Chord all;
-  for (const Chord& part : parts) all = {std::min(all.in, part.in), std::max(all.out, part.out)};
+  const Chord endless = endless_chord(capsule, ray);
+  if (!(endless.in <= endless.out)) return {};
+  const Chord slab = slab_chord(capsule, ray);
+  Chord all{std::max(endless.in, slab.in), std::min(endless.out, slab.out)};
+  if (!(all.in <= all.out)) all = {};
+  if (all.in == endless.in && all.out == endless.out) return all;  // both ends of the chord are on the barrel
+  for (const Vec3f& end : {capsule.a, capsule.a + capsule.length * capsule.axis}) {
+    const Chord part = chord(BallBody{end, capsule.radius}, ray);
+    all = {std::min(all.in, part.in), std::max(all.out, part.out)};
+  }
   return all;
 }
 

@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-constexpr const char* kRunSize = "1280x720";  // unless the case says otherwise: a run should not wait for pictures
+constexpr const char* kRunSize = "960x540";  // unless the case says otherwise: a run should not wait for pictures
 constexpr const char* kFromContacts[] = {"coordination", "force", "force_x", "force_y", "force_z"};
 
 // What touches each particle, and the sum of the forces on it.
