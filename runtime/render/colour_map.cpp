@@ -71,8 +71,10 @@ class Way {
 
 Srgb colour_of(ColourMap map, double x) {
   if (std::isnan(x)) return kNoValue;
-  static const Way sequential(kSequential), diverging(kCoolWarm);
-  return (map == ColourMap::sequential ? sequential : diverging).at(x);
+  static const std::span<const Srgb> both(kCoolWarm);
+  static const Way sequential(kSequential), below(both.first(5)), above(both.last(5));
+  if (map == ColourMap::sequential) return sequential.at(x);
+  return x < 0.5 ? below.at(2 * x) : above.at(2 * x - 1);
 }
 
 Srgb colour_of_category(size_t index) { return kCategories[index % std::size(kCategories)]; }
