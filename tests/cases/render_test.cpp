@@ -1,0 +1,207 @@
+// Pictures from runs: those a run draws of itself, and those that `scree render` draws from its folder.
+#include <sys/mount.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "runtime/engine.h"
+#include "runtime/render/command.h"
+#include "runtime/render/image.h"
+#include "tests/cases/every_stage.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path& finished_run() {
+  static const TemporaryFolder folder;
+  static const fs::path out = [] {
+    RunOptions options;
+    options.out = folder.path() / "out";
+    EXPECT_EQ(run_case(read_case(write_every_stage(folder.path())), options).status, RunStatus::done);
+    return options.out;
+  }();
+  return out;
+}
+
+class Render : public ::testing::Test {
+ protected:
+  std::vector<fs::path> render(const RenderArguments& arguments) {
+    std::vector<fs::path> files;
+    render_folder(arguments, [&](const std::string& text) { files.push_back(text); });
+    return files;
+  }
+  std::string refusal(const RenderArguments& arguments) {
+    try {
+      render(arguments);
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    ADD_FAILURE() << "nothing was refused";
+    return "";
+  }
+  RenderArguments arguments() const {
+    RenderArguments a;
+    a.folder = finished_run(), a.size = "160x90", a.samples = 1, a.out = (folder_.path() / "pictures").string();
+    return a;
+  }
+  // A case that draws pictures of itself; `more` goes into its table.
+  Case picturing(const std::string& more) {
+    const std::string path = (folder_.path() / "picturing.toml").string();
+    std::ofstream(path) << "base = \"" << write_every_stage(folder_.path())
+                        << "\"\n[[output.picture]]\nname = \"look\"\nsize = \"160x90\"\nsamples = 1\n"
+                        << more;
+    return read_case(path);
+  }
+  RunResult run(const Case& c, const fs::path& out) {
+    RunOptions options;
+    options.out = out;
+    return run_case(c, options);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Render, DrawsEachCameraIntoAFile) {
+  RenderArguments a = arguments();
+  a.cameras = {"front", "side", "top", "free"};
+  a.position = {0.05, -0.1, 0.05}, a.target = {0, 0, 0.02};
+  const std::vector<fs::path> files = render(a);
+  ASSERT_EQ(files.size(), 4u);
+  for (const fs::path& file : files) {
+    const Image image = read_png(file);
+    EXPECT_EQ(image.width(), 160);
+    EXPECT_EQ(image.height(), 90);
+    std::set<Srgb> colours;
+    for (int y = 0; y < 90; ++y)
+      for (int x = 0; x < 160; ++x) colours.insert(image.at(x, y));
+    EXPECT_GT(colours.size(), 50u) << file;
+  }
+}
+
+TEST_F(Render, OneNamedFile) {
+  RenderArguments a = arguments();
+  a.out = (folder_.path() / "one.png").string(), a.colour = "kind", a.cuts = {"y<"}, a.walls = "hidden";
+  EXPECT_EQ(render(a), (std::vector<fs::path>{a.out}));
+  EXPECT_EQ(read_png(a.out).width(), 160);
+  a.cameras = {"front", "side"};
+  EXPECT_NE(refusal(a).find("name a folder"), std::string::npos);
+}
+
+TEST_F(Render, WithoutFfmpegAFilmIsItsPictures) {
+  RenderArguments a = arguments();
+  a.film = true;
+  const std::string path = getenv("PATH");
+  setenv("PATH", folder_.path().c_str(), 1);
+  const std::vector<fs::path> said = render(a);
+  setenv("PATH", path.c_str(), 1);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].string().find("ffmpeg cannot be started"), std::string::npos) << said[0];
+  EXPECT_TRUE(fs::exists(fs::path(a.out) / "film_front_speed" / "00000.png"));
+}
+
+TEST_F(Render, UnknownNamesAreRefused) {
+  RenderArguments a = arguments();
+  a.cameras = {"fornt"};
+  EXPECT_NE(refusal(a).find("did you mean 'front'?"), std::string::npos) << refusal(a);
+  a.cameras.clear(), a.colour = "speeed";
+  EXPECT_NE(refusal(a).find("did you mean 'speed'?"), std::string::npos) << refusal(a);
+  a.colour = "speed", a.walls = "glass";
+  EXPECT_NE(refusal(a).find("known: transparent, faint, hidden"), std::string::npos) << refusal(a);
+  a.walls = "faint", a.cuts = {"y"};
+  EXPECT_NE(refusal(a).find("'y' is not a cut"), std::string::npos) << refusal(a);
+  a.cuts.clear(), a.folder = folder_.path();
+  EXPECT_NE(refusal(a).find("no case.toml"), std::string::npos) << refusal(a);
+}
+
+TEST_F(Render, ASpoiltParticleFileIsNamed) {
+  const fs::path copy = folder_.path() / "copy";
+  fs::copy(finished_run(), copy, fs::copy_options::recursive);
+  fs::resize_file(copy / "particles.vtp", fs::file_size(copy / "particles.vtp") / 2);
+  RenderArguments a = arguments();
+  a.folder = copy;
+  EXPECT_NE(refusal(a).find("is cut off"), std::string::npos) << refusal(a);
+  EXPECT_NE(refusal(a).find("particles.vtp"), std::string::npos) << refusal(a);
+  fs::remove(copy / "particles.vtp");
+  EXPECT_NE(refusal(a).find("no particles"), std::string::npos) << refusal(a);
+}
+
+// In a way that holds for root, too.
+TEST_F(Render, AFolderThatCannotBeMadeIsNamed) {
+  RenderArguments a = arguments();
+  std::ofstream(a.out) << "a file where the folder should be";
+  EXPECT_NE(refusal(a).find(a.out), std::string::npos) << refusal(a);
+  a.out += "/one.png";
+  EXPECT_NE(refusal(a).find("cannot make the folder"), std::string::npos) << refusal(a);
+}
+
+class SmallDisk {
+ public:
+  SmallDisk(const fs::path& path, const char* size) : path_(path) {
+    fs::create_directories(path);
+    mounted_ = mount("scree_test", path.c_str(), "tmpfs", 0, size) == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) umount(path_.c_str());
+  }
+  bool mounted() const { return mounted_; }
+
+ private:
+  fs::path path_;
+  bool mounted_;
+};
+
+TEST_F(Render, AFullDiskIsAnErrorThatNamesTheFileAndLeavesNone) {
+  const SmallDisk disk(folder_.path() / "disk", "size=8k");
+  if (!disk.mounted()) GTEST_SKIP() << "not tried: a small file system cannot be mounted here";
+  RenderArguments a = arguments();
+  a.out = (folder_.path() / "disk" / "one.png").string(), a.size = "640x360";
+  EXPECT_NE(refusal(a).find("No space left on device"), std::string::npos) << refusal(a);
+  EXPECT_NE(refusal(a).find("one.png"), std::string::npos);
+  EXPECT_FALSE(fs::exists(a.out));
+}
+
+TEST_F(Render, ARunDrawsItselfAtItsMomentsAndEndsInTheSameBits) {
+  const Case c = picturing("colour = \"coordination\"\ntimes = [0.002]\nstage_ends = true\n");
+  const fs::path out = folder_.path() / "run";
+  ASSERT_EQ(run(c, out).status, RunStatus::done);
+  expect_same_results(out, finished_run());
+  size_t pictures = 0;
+  for (const auto& entry : fs::directory_iterator(out / "pictures")) {
+    EXPECT_EQ(read_png(entry.path()).height(), 90);
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 6u);  // at 0.002 s, and at the ends of stages, two of which end at once twice
+  EXPECT_GE(read_summary(out)["picture_look"]["pictures"].get<size_t>(), pictures);
+}
+
+TEST_F(Render, ACaseWithAnUnknownCameraOrQuantityIsRefusedWithItsPlace) {
+  const auto said = [&](const std::string& more) {
+    try {
+      picturing(more);
+    } catch (const CaseError& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing was refused");
+  };
+  EXPECT_NE(said("camera = \"tpo\"").find("picturing.toml:6"), std::string::npos) << said("camera = \"tpo\"");
+  EXPECT_NE(said("camera = \"tpo\"").find("did you mean 'top'?"), std::string::npos);
+  EXPECT_NE(said("colour = \"forse\"").find("did you mean 'force'?"), std::string::npos);
+  EXPECT_NE(said("cut = \"w<1\"").find("is not a cut"), std::string::npos);
+  EXPECT_NE(said("colr = \"speed\"").find("unknown key"), std::string::npos);
+}
+
+TEST_F(Render, ARunThatCannotWriteItsPicturesStopsWithACheckpoint) {
+  const Case c = picturing("times = [0.02]\n");
+  const fs::path out = folder_.path() / "blocked";
+  fs::create_directories(out);
+  std::ofstream(out / "pictures") << "a file where the folder should be";
+  const RunResult result = run(c, out);
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_NE(result.message.find((out / "pictures").string()), std::string::npos) << result.message;
+  EXPECT_FALSE(result.checkpoint.empty());
+}
+
+}  // namespace
+}  // namespace scree
