@@ -23,7 +23,7 @@ const std::vector<std::string>& camera_names();
 
 struct CameraSubject {
   Bounds region{};               // what front, side and top frame
-  std::optional<Vec3> junction;  // the node nearest the lattice's centre
+  std::optional<Vec3> junction;  // the inner node nearest the lattice's centre
   double junction_size = 0;      // m, of what is round it: a few fibres
 };
 

@@ -65,7 +65,8 @@ std::vector<Segment> edges_of(const std::vector<Quad>& quads) {
   return result;
 }
 
-// Where at least two fibres end, nearest to x.
+// Where the most fibres meet, two or more; of several such places the one nearest to x. In a lattice these are its
+// inner nodes: those on its faces have fewer fibres, and half of what flows round them is missing.
 std::optional<Vec3> junction_near(const Solid& solid, const Vec3& x) {
   std::map<Corner, std::pair<Vec3, int>> ends;
   for (const Primitive& p : solid.primitives) {
@@ -73,9 +74,11 @@ std::optional<Vec3> junction_near(const Solid& solid, const Vec3& x) {
     if (!axis || !(p.radius > 0)) continue;
     for (const Vec3& end : {axis->a, axis->b}) ++ends.try_emplace(corner_of(end), end, 0).first->second.second;
   }
+  int most = 2;
+  for (const auto& [corner, end] : ends) most = std::max(most, end.second);
   std::optional<Vec3> nearest;
   for (const auto& [corner, end] : ends)
-    if (end.second >= 2 && (!nearest || norm(end.first - x) < norm(*nearest - x) * (1 - 1e-9))) nearest = end.first;
+    if (end.second == most && (!nearest || norm(end.first - x) < norm(*nearest - x) * (1 - 1e-9))) nearest = end.first;
   return nearest;
 }
 

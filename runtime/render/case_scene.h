@@ -15,7 +15,7 @@ void add_solid(Scene& scene, const Solid& solid);
 // taken out; of a case without fibres and regions, where they are now. In every picture of a run the same.
 Bounds region_of_interest(const Case& c, const ParticleFrame& now);
 
-// The region, and the junction of fibres nearest the middle of the fibres.
+// The region, and the junction of the most fibres nearest the middle of them all.
 CameraSubject camera_subject(const Case& c, const Bounds& region);
 
 }  // namespace scree

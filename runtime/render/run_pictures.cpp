@@ -11,7 +11,9 @@ namespace scree {
 
 namespace {
 
-constexpr const char* kRunSize = "960x540";  // unless the case says otherwise: a run should not wait for pictures
+// Unless the case says otherwise: a run should not wait for its pictures.
+constexpr const char* kRunSize = "960x540";
+constexpr int kRunSamples = 4;
 constexpr const char* kFromContacts[] = {"coordination", "force", "force_x", "force_y", "force_z"};
 
 // What touches each particle, and the sum of the forces on it.
@@ -87,7 +89,7 @@ RunPicture read_picture(TableReader& t, const std::vector<RunPicture>& before) {
       "transparent");
   t.text("size", kRunSize);
   request.size = checked(t, "size", [&] { return parse_size(t.text("size")); });
-  request.samples = static_cast<int>(t.whole("samples", between(1, 64, "rays a pixel"), kDefaultSamples));
+  request.samples = static_cast<int>(t.whole("samples", between(1, 64, "rays a pixel"), kRunSamples));
   picture.moments = read_moments(t);
   t.finish();
   return picture;
