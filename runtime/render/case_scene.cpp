@@ -104,18 +104,18 @@ void add_solid(Scene& scene, const Solid& solid) {
 }
 
 Bounds region_of_interest(const Case& c, const ParticleFrame& now) {
-  Bounds bounds = empty_bounds();
-  if (c.fibres.count > 0) bounds = united(bounds, inflated(c.fibres.section, 0.5 * c.fibres.diameter));
-  for (const Region& region : c.regions) bounds = united(bounds, bounds_of(region));
-  if (bounds.min.x <= bounds.max.x)
-    for (const Outlet& outlet : c.outlets) {
-      const Vec3 removed = outlet.point + outlet.remove_beyond * outlet.direction;
-      bounds = united(bounds, {removed, removed});
-    }
-  if (!(bounds.min.x <= bounds.max.x))
-    for (size_t k = 0; k < now.count(); ++k)
-      bounds = united(bounds, inflated({now.positions[k], now.positions[k]}, now.radii[k]));
-  return bounds.min.x <= bounds.max.x ? bounds : bounds_of(c.solid);
+  Bounds sources = c.fibres.count > 0 ? inflated(c.fibres.section, 0.5 * c.fibres.diameter) : empty_bounds();
+  for (const Region& region : c.regions) sources = united(sources, bounds_of(region));
+  Bounds bounds = united(bounds_of(c.solid), sources);
+  for (const Outlet& outlet : c.outlets) {
+    const Vec3 removed = outlet.point + outlet.remove_beyond * outlet.direction;
+    bounds = united(bounds, {removed, removed});
+  }
+  if (sources.min.x <= sources.max.x) bounds.max.z = std::min(bounds.max.z, sources.max.z);
+  if (volume_of(bounds) > 0) return bounds;
+  for (size_t k = 0; k < now.count(); ++k)
+    bounds = united(bounds, inflated({now.positions[k], now.positions[k]}, now.radii[k]));
+  return bounds;
 }
 
 CameraSubject camera_subject(const Case& c, const Bounds& region) {
