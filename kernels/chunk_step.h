@@ -39,9 +39,23 @@ inline void promote_near_pairs(const ChunkTask<typename L::Real>& task) {
   near.resize(kept);
 }
 
+// A kick's work by gravity, and what contact forces do beyond their power at the old velocity times the kick.
+template <class Real>
+inline void add_motion(const Particle<Real>& p, const Real* row, const StepSettings& s, StepLedger& ledger) {
+  const double mass = 1 / static_cast<double>(p.inverse_mass), kick = s.kick;
+  const double inertia = 0.4 * mass * static_cast<double>(p.radius) * static_cast<double>(p.radius);
+  const double velocity[3] = {p.vx, p.vy, p.vz};
+  for (int a = 0; a < 3; ++a) {
+    const double force = row[a], torque = row[3 + a], weight = mass * s.gravity[a];
+    ledger.gravity += weight * (velocity[a] + 0.5 * kick * (force / mass + s.gravity[a])) * kick;
+    ledger.second_order += 0.5 * kick * kick * (force * (force / mass + s.gravity[a]) + torque * torque / inertia);
+    ledger.gravity_impulse[a] += weight * kick;
+  }
+}
+
 // Leapfrog: v(t + dt/2) = v(t - dt/2) + dt a(t), x(t + dt) = x(t) + dt v(t + dt/2). Same positions and half-step
 // velocities as velocity Verlet; the first step of a run kicks by dt/2 only.
-template <class Real>
+template <class Real, bool ledger>
 inline void integrate(const ChunkTask<Real>& task, ChunkOutcome& outcome) {
   const StepSettings& s = *task.settings;
   const Real kick = static_cast<Real>(s.kick);
@@ -55,6 +69,7 @@ inline void integrate(const ChunkTask<Real>& task, ChunkOutcome& outcome) {
     const Real* row = task.rows + 8 * static_cast<size_t>(k - task.begin);
     const Real linear = kick * p.inverse_mass;
     const Real angular = linear * (Real(2.5) / (p.radius * p.radius));  // I = 2/5 m R^2
+    if constexpr (ledger) add_motion(p, row, s, outcome.ledger);
     p.vx = fma(linear, row[0], p.vx + gravity_kick.x);
     p.vy = fma(linear, row[1], p.vy + gravity_kick.y);
     p.vz = fma(linear, row[2], p.vz + gravity_kick.z);
@@ -101,12 +116,15 @@ ChunkOutcome step_chunk(const ChunkTask<typename L::Real>& task) {
   if (task.settings->check_near) promote_near_pairs<L>(task);
   clock.ends(StepPart::near_check);
   std::memset(task.rows, 0, (task.end - task.begin + 1) * size_t{8} * sizeof(Real));
-  outcome.max_pair_overlap = pair_pass<L, Traits>(task);
+  const PassOutcome pairs = pair_pass<L, Traits>(task);
   clock.ends(StepPart::pairs);
-  outcome.max_solid_overlap = solid_pass<L, Traits>(task);
+  const PassOutcome solids = solid_pass<L, Traits>(task);
   clock.ends(StepPart::solids);
-  integrate<Real>(task, outcome);
+  integrate<Real, Traits::ledger>(task, outcome);
   clock.ends(StepPart::integration);
+  outcome.max_pair_overlap = pairs.max_overlap, outcome.max_solid_overlap = solids.max_overlap;
+  if constexpr (Traits::ledger)
+    outcome.ledger.add(pairs.ledger, task.settings->kick), outcome.ledger.add(solids.ledger, task.settings->kick);
   return outcome;
 }
 

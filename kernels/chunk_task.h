@@ -7,6 +7,7 @@
 #include "kernels/contacts.h"
 #include "kernels/materials.h"
 #include "kernels/particle.h"
+#include "kernels/step_outcome.h"
 
 namespace scree {
 
@@ -41,18 +42,6 @@ struct StepSettings {
   double inner;          // m: a near pair closer than this becomes active
   double speed_limit;    // m/s: a particle faster than this (or NaN) fails the step
   bool profile = false;  // ChunkOutcome::seconds is wanted
-};
-
-// The parts of a chunk's step that a profile tells apart.
-enum class StepPart { near_check, pairs, solids, integration };
-inline constexpr int kStepParts = 4;
-
-struct ChunkOutcome {
-  double max_speed = 0;             // m/s, of the velocities that moved the particles
-  double max_pair_overlap = 0;      // share of the sum of the radii
-  double max_solid_overlap = 0;     // share of R_i
-  bool too_fast = false;            // a speed above the limit, or NaN
-  double seconds[kStepParts] = {};  // by StepPart, of the thread that did it; only in a profile
 };
 
 template <class Real>

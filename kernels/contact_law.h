@@ -50,6 +50,7 @@ struct Reaction {
   Vec<T> force;         // N, on i; -force on j
   Vec<T> lever_torque;  // N, n x F_t; torque on i: -c_i times this, on j: -c_j times this
   Vec<T> rolling;       // N m, M; -M on i, +M on j
+  T elastic;            // N, the spring's part of the normal force
 };
 
 // The tangential part: Mindlin's spring with history, cut by Coulomb's limit.
@@ -109,7 +110,7 @@ template <RollingModel model, class T>
   const Vec<T> tangential =
       mindlin_friction(c, k_t, p.tangential_damping * root_sm, friction_limit, dt, history.tangential_displacement);
   const Vec<T> rolling = rolling_friction<model>(c, p, elastic, normal_force, k_t, dt, history.rolling_torque);
-  return {fma(normal_force, c.normal, tangential), cross(c.normal, tangential), rolling};
+  return {fma(normal_force, c.normal, tangential), cross(c.normal, tangential), rolling, elastic};
 }
 
 }  // namespace scree

@@ -28,6 +28,7 @@ class Packing {
     for (const PackedSphere& s : all_) max_radius_ = std::max(max_radius_, s.radius);
     next_.resize(moving_);
     confined_.assign(moving_, 0);
+    sort_along_curve();
   }
 
   PackingOutcome run(int max_iterations, const std::function<void()>& look) {
@@ -43,7 +44,7 @@ class Packing {
       travel_ += s.longest_way;
       if (2 * travel_ > kListGap * max_radius_) find_neighbours();
     }
-    for (size_t k = 0; k < moving_; ++k) out_[k] = all_[k];
+    for (size_t k = 0; k < moving_; ++k) out_[order_[k]] = all_[k];
     return outcome;
   }
 
@@ -52,16 +53,34 @@ class Packing {
     double worst_overlap = 0, longest_way = 0;
   };
 
-  void find_neighbours() {
+  // packed_: the spheres along the grid's Morton curve, index in the low half.
+  void sort_into_grid() {
     Bounds bounds = empty_bounds();
     for (const PackedSphere& s : all_) bounds = united(bounds, {s.position, s.position});
     const double none[3] = {0, 0, 0};
     const double reach = 2 * max_radius_ * (1 + kTargetGap) + kListGap * max_radius_;
     grid_.lay(bounds, none, reach, std::max<size_t>(4096, 4 * all_.size()));
     packed_.resize(all_.size());
-    for (size_t k = 0; k < all_.size(); ++k)
-      packed_[k] = uint64_t{grid_.morton(grid_.cell_of(all_[k].position))} << 32 | k;
+    parallel_for_each(
+        all_.size(), [&](size_t k) { packed_[k] = uint64_t{grid_.morton(grid_.cell_of(all_[k].position))} << 32 | k; });
     radix_sort(packed_, scratch_, grid_.morton_bits());
+  }
+
+  // Callers give spheres in any order; neighbours side by side in memory make the sweeps several times faster. Once is
+  // enough: they do not go far.
+  void sort_along_curve() {
+    sort_into_grid();
+    const std::vector<PackedSphere> before(all_.begin(), all_.begin() + static_cast<ptrdiff_t>(moving_));
+    order_.reserve(moving_);
+    for (const uint64_t p : packed_)
+      if (const uint32_t k = static_cast<uint32_t>(p); k < moving_) {
+        all_[order_.size()] = before[k];
+        order_.push_back(k);
+      }
+  }
+
+  void find_neighbours() {
+    sort_into_grid();
     for (size_t k = 0; k < packed_.size(); ++k) {
       CellGrid::Range& range = grid_.ranges[grid_.linear(grid_.cell_of(all_[packed_[k] & 0xffffffffu].position))];
       if (range.end == 0) range.begin = static_cast<uint32_t>(k);
@@ -139,7 +158,8 @@ class Packing {
   size_t moving_;
   const Confine& confine_;
   std::span<PackedSphere> out_;
-  std::vector<PackedSphere> all_;
+  std::vector<PackedSphere> all_;  // those that move, along the curve, then the fixed ones
+  std::vector<uint32_t> order_;    // where each that moves came from
   std::vector<Vec3> next_;
   std::vector<uint8_t> confined_;  // confine() left it where it is
   std::vector<std::vector<uint32_t>> neighbours_;

@@ -1,21 +1,31 @@
 // Particle-particle contacts of one chunk: blocks of pairs through the contact law.
-// Reads old particles, writes histories and adds to the chunk's force rows. Returns the largest overlap as a share of
-// the sum of the radii.
+// Reads old particles, writes histories and adds to the chunk's force rows.
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 
+#include "kernels/contact_work.h"
 #include "kernels/lane_bodies.h"
 #include "kernels/periodic.h"
 
 namespace scree {
 
 // What the instantiation knows beforehand.
-template <RollingModel rolling_model, bool is_uniform>
+template <RollingModel rolling_model, bool is_uniform, bool has_ledger = false>
 struct PassTraits {
   static constexpr RollingModel rolling = rolling_model;
   static constexpr bool uniform = is_uniform;
+  static constexpr bool ledger = has_ledger;
 };
+
+// What a pass gives back beside forces and histories.
+struct PassOutcome {
+  double max_overlap = 0;  // pairs: share of the sum of the radii; solid: of the particle's radius
+  StepLedger ledger;       // of its contacts, per second
+};
+template <class L, class Traits>
+using WorkOf = std::conditional_t<Traits::ledger, BlockWork<typename L::Real>, NoWork>;
 
 template <class L>
 struct PairGeometry {
@@ -83,7 +93,8 @@ struct PairReaction {
 template <class L, class Traits>
 [[gnu::always_inline]] inline PairReaction<typename L::F> react(const ChunkTask<typename L::Real>& task,
                                                                 PairBlock<typename L::Real>& block, int lane,
-                                                                PairGeometry<L>& g, typename L::F& max_share) {
+                                                                PairGeometry<L>& g, typename L::F& max_share,
+                                                                WorkOf<L, Traits>& work) {
   using F = typename L::F;
   const auto touching = g.contact.overlap > F(0);
   typename L::Real* stored = block.history[0] + lane;
@@ -99,6 +110,11 @@ template <class L, class Traits>
   const Reaction<F> r = hertz_mindlin<Traits::rolling>(g.contact, constants, F(task.settings->history_dt),
                                                        task.settings->limit_attraction, history);
   store_history<L>(select_history(touching, history, no_history<F>()), stored);
+  if constexpr (Traits::ledger) {
+    typename L::Real share[L::width];  // the other chunk of a pair across two counts it, too
+    for (int k = 0; k < L::width; ++k) share[k] = block.row[lane + k] == task.end - task.begin ? 0.5f : 1.0f;
+    add_powers<L>(g.contact, r, L::load(share), touching, work, lane);
+  }
   const Vec<F> force = select_vec(touching, r.force, zero);
   const Vec<F> lever = select_vec(touching, r.lever_torque, zero), rolling = select_vec(touching, r.rolling, zero);
   return {{force, fma(-g.arm_i, lever, -rolling)}, {-force, fma(-g.arm_j, lever, rolling)}};
@@ -108,7 +124,7 @@ template <class L, class Traits>
 // by side in one stage fill each other's waits. The sixteen i rows first, then the sixteen j rows: the order of
 // additions, and so the bits, are those of every lane width.
 template <class L, class Traits, bool wraps>
-inline double pair_pass(const ChunkTask<typename L::Real>& task, size_t first, size_t last) {
+inline void pair_pass(const ChunkTask<typename L::Real>& task, size_t first, size_t last, PassOutcome& outcome) {
   using F = typename L::F;
   constexpr int vectors = kBlock / L::width;
   F max_share(0);
@@ -120,21 +136,25 @@ inline double pair_pass(const ChunkTask<typename L::Real>& task, size_t first, s
     PairGeometry<L> geometry[vectors];
     for (int k = 0; k < vectors; ++k) geometry[k] = pair_lanes<L, wraps>(task, blocks[b], k * L::width);
     PairReaction<F> reaction[vectors];
+    WorkOf<L, Traits> work;
     for (int k = 0; k < vectors; ++k)
-      reaction[k] = react<L, Traits>(task, blocks[b], k * L::width, geometry[k], max_share);
+      reaction[k] = react<L, Traits>(task, blocks[b], k * L::width, geometry[k], max_share, work);
+    if constexpr (Traits::ledger) work.add_to(outcome.ledger);
     for (int k = 0; k < vectors; ++k)
       add_to_rows<L>(task, blocks[b].i + k * L::width, reaction[k].on_i.force, reaction[k].on_i.torque);
     for (int k = 0; k < vectors; ++k)
       add_to_rows<L>(task, blocks[b].row + k * L::width, reaction[k].on_j.force, reaction[k].on_j.torque);
   }
-  return L::max_lane(max_share);
+  outcome.max_overlap = std::max<double>(outcome.max_overlap, L::max_lane(max_share));
 }
 
 template <class L, class Traits>
-inline double pair_pass(const ChunkTask<typename L::Real>& task) {
+inline PassOutcome pair_pass(const ChunkTask<typename L::Real>& task) {
+  PassOutcome outcome;
   const size_t count = task.contacts->blocks.size(), wrapping = std::min(count, task.contacts->first_wrapping);
-  const double direct = pair_pass<L, Traits, false>(task, 0, wrapping);
-  return wrapping < count ? std::max(direct, pair_pass<L, Traits, true>(task, wrapping, count)) : direct;
+  pair_pass<L, Traits, false>(task, 0, wrapping, outcome);
+  if (wrapping < count) pair_pass<L, Traits, true>(task, wrapping, count, outcome);
+  return outcome;
 }
 
 }  // namespace scree

@@ -14,7 +14,7 @@
 
 #include <cstring>
 
-#include "kernels/lane_bodies.h"
+#include "kernels/pair_pass.h"
 
 namespace scree {
 
@@ -186,10 +186,26 @@ inline Contact<typename L::F> solid_contact_of(const SolidLanes<L>& lanes, uint3
   return c;
 }
 
+// The powers of one slot's contact, and the solid's force. A wall's rolling_spin is not the spin that the torque acts
+// on.
+template <class L>
+inline void add_solid_work(const SolidLanes<L>& lanes, uint32_t s, Contact<typename L::F> c,
+                           const Reaction<typename L::F>& r, BlockWork<typename L::Real>& work) {
+  using F = typename L::F;
+  using Row = BlockWork<typename L::Real>;
+  c.rolling_spin = lanes.i.spin;
+  add_powers<L>(c, r, F(1), lanes.kept[s], work, lanes.lane);
+  const auto note = [&](typename Row::Row row, const F& value) {
+    add_row<L>(work.value[row] + lanes.lane, select(lanes.kept[s], value, F(0)));
+  };
+  note(Row::walls, dot(r.force, surface_velocity(lanes, s)));
+  note(Row::force_x, r.force.x), note(Row::force_y, r.force.y), note(Row::force_z, r.force.z);
+}
+
 // The law on one slot: adds to force and torque of the lanes' particles, updates the history given.
 template <class L, class Traits>
 inline void solid_contact(const SolidLanes<L>& lanes, uint32_t s, ContactHistory<typename L::F>& history,
-                          Vec<typename L::F>& force, Vec<typename L::F>& torque) {
+                          Vec<typename L::F>& force, Vec<typename L::F>& torque, WorkOf<L, Traits>& work) {
   using F = typename L::F;
   const Contact<F> c = solid_contact_of(lanes, s);
   const Reaction<F> r =
@@ -199,11 +215,13 @@ inline void solid_contact(const SolidLanes<L>& lanes, uint32_t s, ContactHistory
   const Vec<F> zero{F(0), F(0), F(0)};
   force += select_vec(lanes.kept[s], r.force, zero);
   torque += select_vec(lanes.kept[s], fma(-arm, r.lever_torque, -r.rolling), zero);
+  if constexpr (Traits::ledger) add_solid_work(lanes, s, c, r, work);
 }
 
 template <class L, class Traits>
 inline void solid_lanes(const ChunkTask<typename L::Real>& task, const SolidBlock& block,
-                        SolidSlot<typename L::Real>* slots, int lane, typename L::F& max_share) {
+                        SolidSlot<typename L::Real>* slots, int lane, typename L::F& max_share,
+                        WorkOf<L, Traits>& work) {
   using F = typename L::F;
   SolidLanes<L> lanes(task, block, slots, lane);
   const uint32_t count = block.slots();
@@ -222,21 +240,25 @@ inline void solid_lanes(const ChunkTask<typename L::Real>& task, const SolidBloc
     slots[s].live = (slots[s].live & ~here) | kept;
     if (kept == 0) continue;
     max_share = max(max_share, select(lanes.kept[s], lanes.overlap[s] / lanes.i.radius, F(0)));
-    solid_contact<L, Traits>(lanes, s, histories[s], force, torque);
+    solid_contact<L, Traits>(lanes, s, histories[s], force, torque, work);
     store_history<L>(histories[s], slots[s].history[0] + lane);
   }
   if (touched > 0) add_to_rows<L>(task, block.i + lane, force, torque);
 }
 
-// Returns the largest overlap as a share of the particle's radius.
 template <class L, class Traits>
-inline double solid_pass(const ChunkTask<typename L::Real>& task) {
+inline PassOutcome solid_pass(const ChunkTask<typename L::Real>& task) {
   using F = typename L::F;
+  PassOutcome outcome;
   F max_share(0);
-  for (const SolidBlock& block : task.contacts->solid_blocks)
+  for (const SolidBlock& block : task.contacts->solid_blocks) {
+    WorkOf<L, Traits> work;
     for (int lane = 0; lane < kBlock; lane += L::width)
-      solid_lanes<L, Traits>(task, block, task.contacts->slots.data() + block.first_slot, lane, max_share);
-  return L::max_lane(max_share);
+      solid_lanes<L, Traits>(task, block, task.contacts->slots.data() + block.first_slot, lane, max_share, work);
+    if constexpr (Traits::ledger) work.add_to(outcome.ledger);
+  }
+  outcome.max_overlap = L::max_lane(max_share);
+  return outcome;
 }
 
 }  // namespace scree

@@ -18,6 +18,7 @@ struct StepKernels {
 struct KernelChoice {
   RollingModel rolling = RollingModel::epsd2;
   bool uniform = true;  // one row of material constants for all pairs, one for all walls
+  bool ledger = false;  // ChunkOutcome::ledger is wanted
 };
 
 // Names of the instruction sets this build has and this machine can run, best first: "avx512", "avx2" or "neon",

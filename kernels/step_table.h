@@ -7,20 +7,21 @@
 namespace scree {
 
 template <class L, RollingModel rolling>
-StepKernels<typename L::Real> kernels_for(bool uniform) {
-  return {uniform ? &step_chunk<L, PassTraits<rolling, true>> : &step_chunk<L, PassTraits<rolling, false>>,
-          &search_chunk<L>};
+StepKernels<typename L::Real> kernels_of(const KernelChoice& choice) {
+  if (choice.ledger) return {&step_chunk<L, PassTraits<rolling, false, true>>, &search_chunk<L>};
+  if (choice.uniform) return {&step_chunk<L, PassTraits<rolling, true>>, &search_chunk<L>};
+  return {&step_chunk<L, PassTraits<rolling, false>>, &search_chunk<L>};
 }
 
 template <class L>
 StepKernels<typename L::Real> kernels_for(const KernelChoice& choice) {
   switch (choice.rolling) {
     case RollingModel::none:
-      return kernels_for<L, RollingModel::none>(choice.uniform);
+      return kernels_of<L, RollingModel::none>(choice);
     case RollingModel::cdt:
-      return kernels_for<L, RollingModel::cdt>(choice.uniform);
+      return kernels_of<L, RollingModel::cdt>(choice);
     default:
-      return kernels_for<L, RollingModel::epsd2>(choice.uniform);
+      return kernels_of<L, RollingModel::epsd2>(choice);
   }
 }
 

@@ -21,6 +21,7 @@ void apply_law(const ChunkTask<Real>& task, const Contact<Real>& c, const PairCo
   seen.overlap = static_cast<double>(c.overlap);
   seen.normal = widened(c.normal);
   seen.force = widened(r.force);
+  seen.elastic_energy = 0.4 * static_cast<double>(r.elastic) * seen.overlap;
   seen.slip = widened(c.velocity - dot(c.velocity, c.normal) * c.normal + cross(c.normal, c.arm_spin));
 }
 

@@ -11,14 +11,15 @@
 namespace scree {
 
 struct TouchingContact {
-  uint32_t i = 0;        // particle
-  uint32_t j = 0;        // particle, or row in the table of the primitive's skeleton kind
-  int skeleton = -1;     // -1: j is a particle; 0 segment, 1 quad, 2 revolution
-  double overlap = 0;    // m, > 0
-  Vec<double> normal{};  // unit, from j to i
-  Vec<double> point{};   // m: on the surface of j where that is solid, midway in the overlap between particles
-  Vec<double> force{};   // N, on i
-  Vec<double> slip{};    // m/s, tangential velocity of i relative to j at the contact
+  uint32_t i = 0;             // particle
+  uint32_t j = 0;             // particle, or row in the table of the primitive's skeleton kind
+  int skeleton = -1;          // -1: j is a particle; 0 segment, 1 quad, 2 revolution
+  double overlap = 0;         // m, > 0
+  Vec<double> normal{};       // unit, from j to i
+  Vec<double> point{};        // m: on the surface of j where that is solid, midway in the overlap between particles
+  Vec<double> force{};        // N, on i
+  Vec<double> slip{};         // m/s, tangential velocity of i relative to j at the contact
+  double elastic_energy = 0;  // J, of the normal spring: 2/5 of its force times the overlap (Hertz)
 };
 
 // Visits the contacts in the task's lists (a pair across two chunks is in both). task.new_particles, task.rows and

@@ -136,6 +136,7 @@ struct OutputSettings {
   double steady_from = 0,
          steady_to = 0;  // s after the drain began: window of the steady flow; 0, 0: found automatically
   bool final_vtk = true;
+  bool energy_ledger = false;  // where the energy goes, in summary.json
   std::vector<RunPicture> pictures;  // runtime/render/run_pictures.h
 };
 

@@ -76,6 +76,7 @@ SizeDistribution read_distribution(TableReader t) {
 void read_output(TableReader t, OutputSettings& output) {
   output.interval = t.number("interval", kDuration, output.interval);
   output.final_vtk = t.flag("final_vtk", output.final_vtk);
+  output.energy_ledger = t.flag("energy_ledger", output.energy_ledger);
   if (t.has("steady_window")) {
     const std::vector<double> window = t.numbers("steady_window", between(0, 1e6, "s"), 2);
     if (window[1] <= window[0])

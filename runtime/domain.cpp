@@ -31,7 +31,8 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
       brute_force_solid_(options.brute_force_solid),
       check_interval_(options.list_check_interval),
       fixed_skin_(options.skin > 0 ? options.skin : c.neighbour.skin),
-      kinds_(static_cast<uint32_t>(c.kinds.size())) {
+      kinds_(static_cast<uint32_t>(c.kinds.size())),
+      ledger_(c.output.energy_ledger) {
   for (int a = 0; a < 3; ++a) periodic_[a] = c.periodic[a];
   const Vec3 length = c.domain.max - c.domain.min;
   const double lengths[3] = {length.x, length.y, length.z}, gravity[3] = {c.gravity.x, c.gravity.y, c.gravity.z};
@@ -42,7 +43,8 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
   settings_.limit_attraction = c.contact.limit_attraction, settings_.profile = options.profile;
   materials_ = material_table<Real>(c);
   isa_ = std::is_same_v<Real, double> ? "reference" : options.isa.empty() ? available_isas().front() : options.isa;
-  kernels_ = select_kernels<Real>(isa_, {c.contact.rolling, materials_.uniform_pairs && materials_.uniform_walls});
+  kernels_ =
+      select_kernels<Real>(isa_, {c.contact.rolling, materials_.uniform_pairs && materials_.uniform_walls, ledger_});
   solid_identity_.resize(solid_.primitives.size());
   for (uint32_t k = 0; k < solid_identity_.size(); ++k) solid_identity_[k] = k;
   reserve(0);
@@ -96,10 +98,19 @@ void Domain<Real>::insert(std::span<const ParticleState> particles) {
     p.wx = static_cast<Real>(s.spin.x), p.wy = static_cast<Real>(s.spin.y), p.wz = static_cast<Real>(s.spin.z);
     p.radius = static_cast<Real>(s.radius), p.inverse_mass = static_cast<Real>(1 / s.mass);
     now_[count_++] = p;
+    book(counters_.ledger.inserted_kinetic, counters_.ledger.inserted_momentum, state_of(p));
     if (s.radius > max_radius_) max_radius_ = s.radius, index_.reset();
     min_radius_ = min_radius_ == 0 ? s.radius : std::min(min_radius_, s.radius);
     max_speed_ = std::max(max_speed_, norm(s.velocity));
   }
+}
+
+// Adds a particle's kinetic energy and momentum, as its record has them, where there is a ledger.
+template <class Real>
+void Domain<Real>::book(double& kinetic, double (&momentum)[3], const ParticleState& s) const {
+  if (!ledger_) return;
+  kinetic += kinetic_energy(s);
+  momentum[0] += s.mass * s.velocity.x, momentum[1] += s.mass * s.velocity.y, momentum[2] += s.mass * s.velocity.z;
 }
 
 template <class Real>
@@ -139,6 +150,7 @@ void Domain<Real>::step() {
     all.max_solid_overlap = std::max(all.max_solid_overlap, o.max_solid_overlap);
     all.too_fast |= o.too_fast;
     for (int part = 0; part < kStepParts; ++part) all.seconds[part] += o.seconds[part];
+    if (ledger_) counters_.ledger.steps.add(o.ledger);
   }
   add_profile(all);
   max_speed_ = all.max_speed;
@@ -260,8 +272,8 @@ std::vector<ContactState> Domain<Real>::contacts() const {
     visit_touching<Real>(chunk_task(c, nullptr), contacts_[c], [&](const TouchingContact& t) {
       const bool solid = t.skeleton >= 0;
       if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
-      found[c].push_back(
-          {t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force, t.slip});
+      found[c].push_back({t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point,
+                          t.force, t.slip, t.elastic_energy});
     });
   });
   std::vector<ContactState> result;

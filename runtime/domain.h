@@ -74,6 +74,7 @@ class Domain final : public Engine {
   ChunkTask<Real> chunk_task(size_t c, Real* rows) const;
   void advance_chunks();
   void add_profile(const ChunkOutcome& all);
+  void book(double& kinetic, double (&momentum)[3], const ParticleState& s) const;
 
   // runtime/domain_watch.cpp
   [[noreturn]] void fail_step(const ChunkOutcome& outcome) const;
@@ -104,6 +105,7 @@ class Domain final : public Engine {
   uint64_t check_interval_;
   double fixed_skin_;
   uint32_t kinds_;
+  bool ledger_;
   StepSettings settings_{};
   StepKernels<Real> kernels_;
   std::string isa_;

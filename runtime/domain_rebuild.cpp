@@ -148,7 +148,9 @@ std::vector<uint8_t> Domain<Real>::take_out_leavers() {
     gone[k] = 1, ++counters_.removed;
     if (counters_.removed_mass.size() <= static_cast<size_t>(where[k]))
       counters_.removed_mass.resize(where[k] + 1, 0.0);
-    counters_.removed_mass[where[k]] += state(k).mass;
+    const ParticleState s = state(k);
+    counters_.removed_mass[where[k]] += s.mass;
+    book(counters_.ledger.removed_kinetic, counters_.ledger.removed_momentum, s);
   }
   return gone;
 }

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/step_outcome.h"
 #include "runtime/case.h"
 
 namespace scree {
@@ -30,6 +31,11 @@ struct ParticleState {
   uint64_t id = 0;  // given by the engine at insertion
 };
 
+// J, of translation and spin.
+inline double kinetic_energy(const ParticleState& p) {
+  return 0.5 * p.mass * (dot(p.velocity, p.velocity) + 0.4 * p.radius * p.radius * dot(p.spin, p.spin));
+}
+
 // A contact as the outside sees it.
 struct ContactState {
   size_t i = 0;             // index into particles()
@@ -40,6 +46,7 @@ struct ContactState {
   Vec3 point{};             // m; of a periodic pair beside i
   Vec3 force{};             // N, on i; -force on j
   Vec3 slip{};              // m/s, tangential velocity of i relative to j at the contact
+  double elastic_energy{};  // J, of the normal spring
 };
 
 // The run cannot go on: what happened, where, and what to change.
@@ -49,10 +56,27 @@ struct RunError : std::runtime_error {
   std::optional<Vec3> where;  // m: what lies round it is written out beside the results
 };
 
+// What goes into and out of the energy and momentum of a run's particles, since its beginning.
+struct EnergyLedger {
+  StepLedger steps;
+  double inserted_kinetic = 0, removed_kinetic = 0;            // J
+  double inserted_momentum[3] = {}, removed_momentum[3] = {};  // N s
+
+  template <class Visit>
+  static void for_each_field(const Visit& visit) {
+    visit("steps", &EnergyLedger::steps);
+    visit("inserted_kinetic", &EnergyLedger::inserted_kinetic);
+    visit("removed_kinetic", &EnergyLedger::removed_kinetic);
+    visit("inserted_momentum", &EnergyLedger::inserted_momentum);
+    visit("removed_momentum", &EnergyLedger::removed_momentum);
+  }
+};
+
 struct EngineCounters {
   uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, inserted = 0, removed = 0;
   std::vector<double> removed_mass;  // kg, by what the removal rule said
   double step_seconds = 0, history_seconds = 0, sort_seconds = 0, pair_search_seconds = 0, solid_search_seconds = 0;
+  EnergyLedger ledger;  // when the case asks for one
   // Of all threads together, only when EngineOptions::profile is set.
   double near_check_seconds = 0, pair_seconds = 0, solid_seconds = 0, integration_seconds = 0;
 
@@ -66,6 +90,7 @@ struct EngineCounters {
     visit("sort_seconds", &EngineCounters::sort_seconds);
     visit("pair_search_seconds", &EngineCounters::pair_search_seconds);
     visit("solid_search_seconds", &EngineCounters::solid_search_seconds);
+    visit("ledger", &EngineCounters::ledger);
     visit("near_check_seconds", &EngineCounters::near_check_seconds);
     visit("pair_seconds", &EngineCounters::pair_seconds), visit("solid_seconds", &EngineCounters::solid_seconds);
     visit("integration_seconds", &EngineCounters::integration_seconds);

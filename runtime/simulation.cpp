@@ -9,6 +9,7 @@
 #include "kernels/parallel.h"
 #include "runtime/case_size.h"
 #include "runtime/case_writer.h"
+#include "runtime/energy_balance.h"
 #include "runtime/memory.h"
 #include "runtime/profile.h"
 #include "runtime/run_folder.h"
@@ -68,6 +69,7 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
                            {"particles", r.particles}});
   j["checkpoints"] = {{"written", simulation.checkpoints_written()}, {"seconds", simulation.checkpoint_seconds()}};
   j["resumed_from"] = simulation.resumed_from().empty() ? nlohmann::json() : nlohmann::json(simulation.resumed_from());
+  if (c.output.energy_ledger) j["energy"] = to_json(balance_of(e));
   for (const auto& o : simulation.observers())
     if (const nlohmann::json own = o->summary(); !own.is_null()) j[o->name()] = own;
   j["wall_seconds"] = {{"step", k.step_seconds},

@@ -252,9 +252,7 @@ class Simulation {
     const auto at_rest = [&] {
       if (stage_time() >= s.max_time * (1 - 1e-9) && s.max_time > 0) return true;
       if (s.kinetic_energy_per_particle <= 0 || stage_time() < shortest || engine_->count() == 0) return false;
-      const double energy = engine_->sum([](const ParticleState& p) {
-        return 0.5 * p.mass * (dot(p.velocity, p.velocity) + 0.4 * p.radius * p.radius * dot(p.spin, p.spin));
-      });
+      const double energy = engine_->sum(kinetic_energy);
       return energy / static_cast<double>(engine_->count()) <= s.kinetic_energy_per_particle;
     };
     advance_until(at_rest, [&] { return s.max_time > 0 ? stage_time() / s.max_time : -1.0; });

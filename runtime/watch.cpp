@@ -25,9 +25,7 @@ double largest_wall_speed(const Case& c) {
 
 EnergyLook look_at(const Engine& e, const std::optional<EnergyLook>& last) {
   EnergyLook now{e.time(), 0, 0, e.max_speed(), e.max_overlap(), e.count(), e.counters().inserted};
-  now.kinetic = e.sum([](const ParticleState& p) {
-    return 0.5 * p.mass * (dot(p.velocity, p.velocity) + 0.4 * p.radius * p.radius * dot(p.spin, p.spin));
-  });
+  now.kinetic = e.sum(kinetic_energy);
   const bool same = last && last->particles == now.particles && last->inserted == now.inserted;
   now.mass = same ? last->mass : e.sum([](const ParticleState& p) { return p.mass; });
   return now;

@@ -138,6 +138,7 @@ void render_folder(const RenderArguments& a, const std::function<void(const std:
       if (!a.film) tell(path.string());
     }
     if (a.film) tell(make_film(film, a.frames_per_second));
+    if (a.film && frames.size() == 1) tell(fmt::format("it is of one moment: {} holds no other", a.folder.string()));
   }
 }
 

@@ -5,7 +5,7 @@
 namespace scree {
 namespace {
 
-const KernelChoice kEpsd2{RollingModel::epsd2, true};
+const KernelChoice kEpsd2{RollingModel::epsd2, true, false};
 
 TEST(SelfCheck, every_instruction_set_of_this_machine_agrees_with_scalar) {
   for (const RollingModel rolling : {RollingModel::none, RollingModel::cdt, RollingModel::epsd2})

@@ -69,10 +69,6 @@ TEST_P(Conservation, MomentumOfAFreeCluster) {
   }
 }
 
-double kinetic_energy(const ParticleState& p) {
-  return 0.5 * p.mass * dot(p.velocity, p.velocity) + 0.2 * p.mass * p.radius * p.radius * dot(p.spin, p.spin);
-}
-
 // Head-on with e = 1 and friction: the scheme's error is all that changes the energy.
 TEST_P(Conservation, EnergyOfElasticImpactsToTheOrderOfTheScheme) {
   const auto gain = [&](double steps_per_contact) {

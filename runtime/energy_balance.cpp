@@ -1,0 +1,57 @@
+#include "runtime/energy_balance.h"
+
+#include <cmath>
+
+namespace scree {
+
+namespace {
+
+Vec3 vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+Vec3 momentum_of(const Engine& e) {
+  return {e.sum([](const ParticleState& p) { return p.mass * p.velocity.x; }),
+          e.sum([](const ParticleState& p) { return p.mass * p.velocity.y; }),
+          e.sum([](const ParticleState& p) { return p.mass * p.velocity.z; })};
+}
+
+}  // namespace
+
+EnergyBalance balance_of(const Engine& engine) {
+  const EnergyLedger& ledger = engine.counters().ledger;
+  const StepLedger& steps = ledger.steps;
+  EnergyBalance b;
+  b.kinetic = engine.sum(kinetic_energy);
+  b.inserted_kinetic = ledger.inserted_kinetic, b.removed_kinetic = ledger.removed_kinetic;
+  b.gravity = steps.gravity, b.walls = steps.walls;
+  b.damping = steps.damping, b.friction = steps.friction, b.rolling = steps.rolling;
+  for (const ContactState& contact : engine.contacts()) b.elastic += contact.elastic_energy;
+  b.time_stepping = steps.second_order + b.elastic - steps.elastic;
+  b.energy_residual = b.kinetic + b.removed_kinetic + b.elastic + b.damping + b.friction + b.rolling -
+                      (b.inserted_kinetic + b.gravity + b.walls + b.time_stepping);
+  b.turned_over = std::abs(b.gravity) + std::abs(b.walls) + b.inserted_kinetic;
+
+  const Vec3 gravity = vector(steps.gravity_impulse), solid = vector(steps.solid_impulse);
+  b.momentum_residual =
+      momentum_of(engine) + vector(ledger.removed_momentum) - vector(ledger.inserted_momentum) - gravity - solid;
+  b.impulse_turned_over = norm(gravity) + norm(solid) + norm(vector(ledger.inserted_momentum));
+  return b;
+}
+
+nlohmann::json to_json(const EnergyBalance& b) {
+  return {{"kinetic_J", b.kinetic},
+          {"inserted_kinetic_J", b.inserted_kinetic},
+          {"removed_kinetic_J", b.removed_kinetic},
+          {"gravity_work_J", b.gravity},
+          {"moving_walls_work_J", b.walls},
+          {"elastic_J", b.elastic},
+          {"dissipated_by_damping_J", b.damping},
+          {"dissipated_by_friction_J", b.friction},
+          {"dissipated_by_rolling_J", b.rolling},
+          {"time_stepping_J", b.time_stepping},
+          {"energy_residual_share", b.energy_residual_share()},
+          {"momentum_residual_share", b.momentum_residual_share()},
+          {"tolerance", kLedgerTolerance},
+          {"closes", b.closes()}};
+}
+
+}  // namespace scree
