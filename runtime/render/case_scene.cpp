@@ -111,7 +111,7 @@ Bounds region_of_interest(const Case& c, const ParticleFrame& now) {
     const Vec3 removed = outlet.point + outlet.remove_beyond * outlet.direction;
     bounds = united(bounds, {removed, removed});
   }
-  if (sources.min.x <= sources.max.x) bounds.max.z = std::min(bounds.max.z, sources.max.z);
+  if (!c.regions.empty()) bounds.max.z = std::min(bounds.max.z, sources.max.z);
   if (volume_of(bounds) > 0) return bounds;
   for (size_t k = 0; k < now.count(); ++k)
     bounds = united(bounds, inflated({now.positions[k], now.positions[k]}, now.radii[k]));
