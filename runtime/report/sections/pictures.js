@@ -1,0 +1,31 @@
+// Pictures of the run. gallery() serves the sections of other folders, too.
+
+const zoomPicture = (picture) => {
+  const box = document.getElementById("zoom");
+  box.replaceChildren(h("img", { src: picture.uri, alt: picture.caption }), h("p", {}, picture.caption));
+  box.onclick = () => box.close();
+  box.showModal();
+};
+
+const figure = (picture) =>
+  h("figure", {},
+    h("button", { type: "button", class: "picture", "aria-label": `Enlarge ${picture.caption}`, click: () => zoomPicture(picture) },
+      h("img", { src: picture.uri, alt: picture.caption, width: picture.width, height: picture.height, loading: "lazy" })),
+    h("figcaption", {}, picture.caption));
+
+// The pictures of one folder of each run; null if there are none.
+const gallery = (runs, folder) => {
+  const parts = runs.map((run, index) => {
+    const pictures = run.pictures.filter((p) => p.folder === folder);
+    if (pictures.length === 0) return null;
+    const out = pictures.find((p) => p.left_out)?.left_out;
+    return [
+      runs.length > 1 && h("h3", {}, swatch(index), " ", run.name),
+      h("div", { class: "gallery" }, pictures.filter((p) => p.uri).map(figure)),
+      out && note(`${grouped(out)} more in `, h("a", { href: `${run.link}/${folder}/` }, `${folder}/`), "."),
+    ];
+  }).filter(Boolean);
+  return parts.length > 0 ? parts : null;
+};
+
+addSection({ id: "pictures", title: "Pictures", make: ({ runs }) => gallery(runs, "pictures") });
