@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kDataMark = "@DATA@";
 
 // JSON that may stand inside <script>: "</script>" and "<!--" cannot occur in it.
-std::string for_html(const ReportJson& data) {
+std::string for_html(ReportJson data) {
+  data["version"] = SCREE_VERSION;
   const std::string json = data.dump(-1, ' ', false, ReportJson::error_handler_t::replace);
   std::string text;
   text.reserve(json.size());

@@ -33,12 +33,6 @@ std::string series_of(const fs::path& path) {
   return stem.substr(0, stem.find_last_not_of("0123456789.") + 1);
 }
 
-std::string caption_of(const fs::path& path) {
-  std::string text = path.stem().string();
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
 // Of each series first and last and evenly what lies between, so that all series together have at most `count`.
 std::vector<fs::path> spread(const std::vector<fs::path>& files, size_t count) {
   std::map<std::string, std::vector<fs::path>> series;
@@ -92,7 +86,6 @@ ReportJson pictures_of(const fs::path& folder, const PictureBudget& budget) {
       bytes_left -= std::min<uint64_t>(bytes.size(), bytes_left), ++shown;
       result.push_back({{"folder", name},
                         {"file", file.filename().string()},
-                        {"caption", caption_of(file)},
                         {"width", big_endian(std::string_view(bytes).substr(16))},
                         {"height", big_endian(std::string_view(bytes).substr(20))},
                         {"uri", "data:image/png;base64," + base64(bytes)}});

@@ -7,7 +7,7 @@ namespace scree {
 
 inline constexpr const char* kPictureFolders[] = {"pictures", "averages", "touch", "residence"};
 
-// [{folder, file, caption, width, height, uri}] for the chosen ones (`uri`: the file itself as a data URI), then
+// [{folder, file, width, height, uri}] for the chosen ones (`uri`: the file itself as a data URI), then
 // {folder, left_out: n} for each folder that holds more than the budget lets in.
 ReportJson pictures_of(const std::filesystem::path& folder, const PictureBudget& budget);
 

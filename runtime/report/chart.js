@@ -63,8 +63,8 @@ const drawErrors = (series) => (u) => {
 };
 
 const axis = (label, more) => ({
-  label,
-  labelSize: 22,
+  label: label || undefined,
+  labelSize: 20,
   labelFont: "12px system-ui, sans-serif",
   font: "12px system-ui, sans-serif",
   stroke: cssColour("var(--quiet)"),
@@ -85,7 +85,6 @@ const seriesOptions = (s) => ({
 const chartOptions = (c, width) => ({
   width,
   height: c.height ?? (width < kPhoneWidth ? kPhoneChartHeight : kChartHeight),
-  tzDate: undefined,
   cursor: {
     drag: { x: true, y: false, setScale: true },
     points: { size: 7 },

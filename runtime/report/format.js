@@ -13,6 +13,12 @@ const significant = (value, digits = 3) => {
   return value.toFixed(Math.max(0, digits - 1 - size)).replace("-", "−");
 };
 
+// A number as a person wrote it in the case: 0.3, not 0.300.
+const plain = (value) => {
+  const text = significant(value, 4);
+  return text.includes(".") && !text.includes("×") ? text.replace(/0+$/, "").replace(/\.$/, "") : text;
+};
+
 const grouped = (value) => (isNumber(value) ? Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, " ") : "–");
 
 // The first unit that makes the value at least 1: [factor, name], from large to small.
@@ -33,6 +39,11 @@ const withUnit = (quantity, value, digits = 3) => {
   const [factor, name] = unitFor(quantity, value);
   return `${significant(value / factor, digits)} ${name}`;
 };
+const given = (quantity, value) => {
+  if (!isNumber(value)) return "–";
+  const [factor, name] = unitFor(quantity, value);
+  return `${plain(value / factor)} ${name}`;
+};
 
 // A number and its standard error with the digits that the error allows: "7.89 ± 0.23".
 const withError = (value, error) => {
@@ -43,13 +54,14 @@ const withError = (value, error) => {
 
 const duration = (seconds) => {
   if (!isNumber(seconds)) return "–";
-  if (seconds < 100) return `${significant(seconds, seconds < 10 ? 2 : 3)} s`;
+  if (seconds < 60) return `${significant(seconds, seconds < 10 ? 2 : 3)} s`;
+  if (seconds < 600) return `${Math.floor(seconds / 60)} min ${Math.floor(seconds % 60)} s`;
   const minutes = Math.round(seconds / 60);
   if (minutes < 120) return `${minutes} min`;
   return minutes < 2880 ? `${Math.floor(minutes / 60)} h ${minutes % 60} min` : `${significant(minutes / 1440, 2)} days`;
 };
 
-const percent = (share) => `${significant(100 * share, 3)} %`;
+const percent = (share) => `${plain(100 * share)} %`;
 
 // "particle_steps_per_second" in words, for keys that the page has no words of its own for.
 const inWords = (key) => {

@@ -29,4 +29,4 @@ document.getElementById("top").append(
   h("nav", { "aria-label": "Sections" }, shown.map(({ id, title }) => h("a", { href: `#${id}` }, title))));
 document.getElementById("page").replaceChildren(
   ...shown.map(({ id, title, content }) => h("section", { id, "aria-labelledby": `${id}-title` }, h("h2", { id: `${id}-title` }, title), content)));
-document.getElementById("foot").append("Made by Scree ", data.version ?? "", ". This page is complete in itself: it can be moved, sent and opened offline; its links to files need the folder beside it.");
+document.getElementById("foot").append("Made by Scree ", data.version, ". This page is complete in itself: it can be moved, sent and opened offline; its links to files need the folder beside it.");

@@ -42,4 +42,5 @@ add_custom_command(
           -P ${CMAKE_CURRENT_SOURCE_DIR}/report/bundle.cmake
   DEPENDS ${report_build}/npm_installed ${report_sources} ${CMAKE_CURRENT_SOURCE_DIR}/report/bundle.cmake
   COMMENT "Bundling the report's page" VERBATIM)
+set_source_files_properties(${CMAKE_CURRENT_SOURCE_DIR}/report.cpp PROPERTIES COMPILE_DEFINITIONS SCREE_VERSION="${PROJECT_VERSION}")
 target_sources(scree_runtime PRIVATE ${report_build}/report_page.cpp)

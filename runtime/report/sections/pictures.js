@@ -1,17 +1,23 @@
 // Pictures of the run. gallery() serves the sections of other folders, too.
 
+// "front_speed_0.350000.png": a camera's name, a colour's, a moment.
+const captionOf = ({ file }) => {
+  const stem = file.replace(/\.png$/, ""), timed = /^(.*?)_?(\d+\.\d+)$/.exec(stem);
+  return timed ? `${inWords(timed[1])}, t = ${plain(Number(timed[2]))} s` : inWords(stem);
+};
+
 const zoomPicture = (picture) => {
   const box = document.getElementById("zoom");
-  box.replaceChildren(h("img", { src: picture.uri, alt: picture.caption }), h("p", {}, picture.caption));
+  box.replaceChildren(h("img", { src: picture.uri, alt: captionOf(picture) }), h("p", {}, captionOf(picture)));
   box.onclick = () => box.close();
   box.showModal();
 };
 
 const figure = (picture) =>
   h("figure", {},
-    h("button", { type: "button", class: "picture", "aria-label": `Enlarge ${picture.caption}`, click: () => zoomPicture(picture) },
-      h("img", { src: picture.uri, alt: picture.caption, width: picture.width, height: picture.height, loading: "lazy" })),
-    h("figcaption", {}, picture.caption));
+    h("button", { type: "button", class: "picture", "aria-label": `Enlarge ${captionOf(picture)}`, click: () => zoomPicture(picture) },
+      h("img", { src: picture.uri, alt: captionOf(picture), width: picture.width, height: picture.height, loading: "lazy" })),
+    h("figcaption", {}, captionOf(picture)));
 
 // The pictures of one folder of each run; null if there are none.
 const gallery = (runs, folder) => {
