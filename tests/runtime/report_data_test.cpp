@@ -1,4 +1,5 @@
 // What goes into a report: everything a folder holds, nothing that breaks the page.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "runtime/report.h"
