@@ -8,20 +8,31 @@ const cssColour = (text) => {
   return name ? getComputedStyle(document.documentElement).getPropertyValue(name).trim() : text;
 };
 
-// Shaded stretches of x and named moments, drawn under the curves.
-const drawBands = (bands, marks) => (u) => {
+// Draws inside the plot's frame.
+const inFrame = (u, draw) => {
   const { ctx } = u, { top, height, left, width } = u.bbox, ratio = devicePixelRatio;
   ctx.save();
   ctx.beginPath();
   ctx.rect(left, top, width, height);
   ctx.clip();
+  draw(ctx, top, height, ratio);
+  ctx.restore();
+};
+
+// Shaded stretches of x.
+const drawBands = (bands) => (u) => inFrame(u, (ctx, top, height, ratio) => {
   for (const band of bands) {
     const a = u.valToPos(band.from, "x", true), b = u.valToPos(band.to, "x", true);
     ctx.fillStyle = cssColour("var(--band)");
     ctx.fillRect(a, top, Math.max(b - a, ratio), height);
   }
+});
+
+// Named moments.
+const drawMarks = (marks) => (u) => inFrame(u, (ctx, top, height, ratio) => {
   ctx.font = `${11 * ratio}px system-ui, sans-serif`;
   ctx.textBaseline = "top";
+  ctx.textAlign = "left";
   let free = -Infinity;  // where the labels so far end
   for (const mark of marks) {
     const x = Math.round(u.valToPos(mark.at, "x", true));
@@ -36,8 +47,7 @@ const drawBands = (bands, marks) => (u) => {
     ctx.fillText(mark.label, x + 4 * ratio, top + 3 * ratio);
     free = x + 12 * ratio + ctx.measureText(mark.label).width;
   }
-  ctx.restore();
-};
+});
 
 // Vertical bars of +- errors[k] at the points of the series that have them.
 const drawErrors = (series) => (u) => {
@@ -90,15 +100,16 @@ const chartOptions = (c, width) => ({
     points: { size: 7 },
     sync: c.sync ? { key: c.sync, scales: ["x", null] } : undefined,
   },
-  legend: { live: true },
+  legend: { live: true, markers: { width: 0, fill: (u, k) => cssColour(c.series[k - 1].colour) } },
   scales: {
     x: { time: false, range: c.xRange },
     y: { range: c.yRange ?? ((u, low, high) => (low === high ? [0, high > 0 ? 1.2 * high : 1] : [Math.min(0, low), high + 0.06 * (high - Math.min(0, low))])) },
   },
-  axes: [axis(c.xLabel, c.xAxis), axis(c.yLabel, { size: 58 })],
+  axes: [axis(c.xLabel, { size: 30, ...c.xAxis }), axis(c.yLabel, { size: width < kPhoneWidth ? 44 : 56 })],
   series: [{ label: c.xName, value: (u, value) => (isNumber(value) ? c.xText(value) : "–") }, ...c.series.map(seriesOptions)],
   hooks: {
-    drawClear: [drawBands(c.bands ?? [], c.marks ?? [])],
+    drawClear: [drawBands(c.bands ?? [])],
+    drawAxes: [drawMarks(c.marks ?? [])],
     draw: [drawErrors(c.series)],
     setScale: [(u, key) => key === "x" && c.onZoom?.(u)],
   },

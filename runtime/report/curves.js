@@ -36,11 +36,12 @@ const stageStart = (run, kind) => run.summary?.stages?.find((stage) => stage.kin
 // Where the discharge begins, s.
 const drainStart = (run) => stageStart(run, "drain") ?? 0;
 
-// Several curves {x, y} on one axis: the only one's own points, or a common grid fine enough for a screen.
+// Several curves {x, y} on one axis: the only one's own points, or a common grid fine enough for a screen, which begins
+// no earlier than `from`.
 const kGridPoints = 2000;
-const onCommonAxis = (curves) => {
+const onCommonAxis = (curves, from = -Infinity) => {
   if (curves.length === 1) return { x: curves[0].x, ys: [curves[0].y] };
-  const low = Math.min(...curves.map((c) => c.x[0]));
+  const low = Math.max(from, Math.min(...curves.map((c) => c.x[0])));
   const high = Math.max(...curves.map((c) => c.x[c.x.length - 1]));
   const x = Array.from({ length: kGridPoints }, (_, k) => low + ((high - low) * k) / (kGridPoints - 1));
   return { x, ys: curves.map((c) => x.map((at) => valueAt(c.x, c.y, at))) };

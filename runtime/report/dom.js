@@ -31,7 +31,18 @@ const note = (...children) => h("p", { class: "note" }, ...children);
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 
-// The colour that a run has in every chart and table.
+// The name and the colour that each run has in every chart and table. In a sweep those of its combination.
+const nameRuns = ({ runs, sweep }) => {
+  runs.forEach((run, index) => { run.label = run.name; run.colour = index; });
+  const combinations = [];
+  for (const member of sweep?.runs ?? []) {
+    const texts = member.values.map((v, k) => sweep.parameters[k].values[v].text), key = texts.join();
+    if (!combinations.includes(key)) combinations.push(key);
+    if (!isNumber(member.run)) continue;
+    runs[member.run].label = [...texts, ...(member.seed === null ? [] : [`seed ${member.seed}`])].join(", ");
+    runs[member.run].colour = combinations.indexOf(key);
+  }
+};
 const kSeriesColours = 8;
 const colourOf = (index) => `var(--series-${index % kSeriesColours})`;
 const swatch = (index) => h("span", { class: "swatch", style: `background:${colourOf(index)}`, "aria-hidden": "true" });

@@ -63,8 +63,14 @@ const duration = (seconds) => {
 
 const percent = (share) => `${plain(100 * share)} %`;
 
-// "particle_steps_per_second" in words, for keys that the page has no words of its own for.
+// "sliding_work_J" in words, for keys that the page has no words of its own for: "Sliding work, J".
+const kUnitOfKey = /_((?:kg|g|s|m[23]?|um|mm|n|j|pa|k|w|deg|bytes)(?:_per_(?:kg|s|m[23]?|k))?|per_(?:s|m[23]?))$/i;
+const kUnitCase = { n: "N", j: "J", pa: "Pa", k: "K", w: "W" };
+const unitInWords = (unit) => unit.split("_per_").map((u) => kUnitCase[u] ?? u).join("/").replace(/^per_/, "1/").replace(/m([23])/, (_, n) => `m${"²³"[n - 2]}`);
+const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+const lowerFirst = (text) => text.charAt(0).toLowerCase() + text.slice(1);
 const inWords = (key) => {
-  const words = String(key).replace(/_/g, " ");
-  return words.charAt(0).toUpperCase() + words.slice(1);
+  const unit = kUnitOfKey.exec(String(key))?.[1];
+  const name = unit ? key.slice(0, key.length - unit.length - 1) : String(key);
+  return capital(name.replace(/_/g, " ")) + (unit ? `, ${unitInWords(unit)}` : "");
 };

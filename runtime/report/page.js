@@ -2,9 +2,11 @@
 
 const data = JSON.parse(document.getElementById("data").textContent);
 
+nameRuns(data);
+
 const subtitle = ({ runs, sweep }) => {
   if (sweep) return `Sweep of ${sweep.parameters.map((p) => p.label).join(", ") || "seeds"}: ${sweep.runs.length} runs, ${runs.length} with results`;
-  if (runs.length > 1) return runs.map((run) => run.name).join(", ");
+  if (runs.length > 1) return runs.map((run) => run.label).join(", ");
   return runs[0]?.name ?? "";
 };
 

@@ -14,7 +14,7 @@ const facts = (pairs) =>
       .map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
 
 const valueText = (value) =>
-  isNumber(value) ? (Number.isInteger(value) ? grouped(value) : significant(value, 4))
+  isNumber(value) ? (Number.isInteger(value) ? grouped(value) : plain(value))
   : Array.isArray(value) ? value.map(valueText).join(", ")
   : value === null || value === undefined ? "–"
   : value === true ? "yes" : value === false ? "no" : String(value);

@@ -54,6 +54,6 @@ addSection({
     const ended = runs.filter((run) => run.summary);
     if (ended.length === 0) return null;
     return table([{ title: "Run" }, { title: "Lost particles", number: true }, { title: "Discharged", number: true }, { title: "Left", number: true }],
-      ended.map((run) => [run.name, grouped(run.summary.lost_particles), withUnit("mass", run.summary.mass_discharged_kg, 5), withUnit("mass", run.summary.mass_retained_kg, 5)]));
+      ended.map((run) => [run.label, grouped(run.summary.lost_particles), withUnit("mass", run.summary.mass_discharged_kg, 5), withUnit("mass", run.summary.mass_retained_kg, 5)]));
   },
 });

@@ -21,7 +21,7 @@ const makeDifferences = (runs) => {
   const shown = keys.slice(0, kMostDifferences);
   return [
     table([{ title: "Run" }, ...shown.map((key) => ({ title: key }))],
-      runs.map((run, k) => [[swatch(k), " ", run.name], ...shown.map((key) => cases[k].get(key)?.replace(/^"|"$/g, "") ?? "–")])),
+      runs.map((run, k) => [[swatch(run.colour), " ", run.label], ...shown.map((key) => cases[k].get(key)?.replace(/^"|"$/g, "") ?? "–")])),
     keys.length > shown.length && note(`${keys.length - shown.length} more keys differ: see the case.toml of the runs.`),
   ];
 };

@@ -4,7 +4,7 @@ const kWindows = [0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2];  // shares of the drain
 const kWindowShare = 0.04;
 
 const flowCurves = (runs) =>
-  runs.map((run, index) => ({ run, index, columns: columnsOf(run, "mass_flow") })).filter(({ columns }) => columns?.time_s && columns?.discharged_kg);
+  runs.map((run) => ({ run, columns: columnsOf(run, "mass_flow") })).filter(({ columns }) => columns?.time_s && columns?.discharged_kg);
 
 // Windows to choose from, s, about these shares of the longest drain; 0: from row to row.
 const windowsOf = (curves) => {
@@ -25,8 +25,8 @@ const makeFlow = (runs) => {
 
   const timeOf = ({ run, columns }) => (several ? columns.time_s.map((t) => t - drainStart(run)) : columns.time_s);
   const rates = (window) => onCommonAxis(curves.map((c) => ({
-    x: timeOf(c), y: slopeOver(c.columns.time_s, c.columns.discharged_kg, window || smallest).map((v) => v && v / rateUnit[0]) })));
-  const masses = onCommonAxis(curves.map((c) => ({ x: timeOf(c), y: c.columns.discharged_kg.map((v) => v / massUnit[0]) })));
+    x: timeOf(c), y: slopeOver(c.columns.time_s, c.columns.discharged_kg, window || smallest).map((v) => v && v / rateUnit[0]) })), several ? 0 : undefined);
+  const masses = onCommonAxis(curves.map((c) => ({ x: timeOf(c), y: c.columns.discharged_kg.map((v) => v / massUnit[0]) })), several ? 0 : undefined);
   const rate = rates(start);
 
   const only = several ? null : curves[0].run;
@@ -36,14 +36,14 @@ const makeFlow = (runs) => {
     bands: Array.isArray(window) ? [{ from: window[0], to: window[1] }] : [],
     marks: only ? (only.summary?.stages ?? []).filter((s) => s.end_s > s.start_s).map((s) => ({ at: s.start_s, label: s.name })) : [],
   };
-  const named = (index, text) => (several ? runs[index].name : text);
+  const named = (run, text) => (several ? run.label : text);
   const steady = only && isNumber(rateOf(only)) && window
     ? [{ label: "steady", values: rate.x.map((t) => (t >= window[0] && t <= window[1] ? rateOf(only) / rateUnit[0] : null)),
          colour: "var(--text)", dash: [6, 4], width: 1.25, text: (v) => `${significant(v, 4)} ${rateUnit[1]}` }] : [];
   const rateChart = chart({ ...common, xLabel: "", yLabel: `mass flow, ${rateUnit[1]}`,
-    series: [...curves.map(({ index }, k) => ({ label: named(index, "mass flow"), values: rate.ys[k], colour: colourOf(index), text: (v) => `${significant(v, 4)} ${rateUnit[1]}` })), ...steady] });
+    series: [...curves.map(({ run }, k) => ({ label: named(run, "mass flow"), values: rate.ys[k], colour: colourOf(run.colour), text: (v) => `${significant(v, 4)} ${rateUnit[1]}` })), ...steady] });
   const massChart = chart({ ...common, xLabel: several ? "time since the drain began, s" : "time, s", yLabel: `discharged, ${massUnit[1]}`,
-    series: curves.map(({ index }, k) => ({ label: named(index, "discharged"), values: masses.ys[k], colour: colourOf(index), text: (v) => `${significant(v, 4)} ${massUnit[1]}` })) });
+    series: curves.map(({ run }, k) => ({ label: named(run, "discharged"), values: masses.ys[k], colour: colourOf(run.colour), text: (v) => `${significant(v, 4)} ${massUnit[1]}` })) });
 
   const choose = h("select", { id: "window", change: (event) => {
     const again = rates(Number(event.target.value));

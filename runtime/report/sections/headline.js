@@ -32,13 +32,13 @@ const oneHeadline = (run) => {
     note(`Steady mass flow from ${windowText(run)} (the shaded window below); ± is one standard error, from the scatter of ${run.summary.steady_bins ?? 8} stretches of the window.`)];
 };
 
-const reportLink = (run) => (run.files.some((f) => f.file === "report.html") ? h("a", { href: `${run.link}/report.html` }, run.name) : run.name);
+const reportLink = (run) => (run.files.some((f) => f.file === "report.html") ? h("a", { href: `${run.link}/report.html` }, run.label) : run.label);
 
 const allHeadlines = (runs) => {
   const unit = flowUnit(runs);
   return [table(
     [{ title: "Run" }, { title: `Steady mass flow, ${unit[1]}`, number: true }, { title: "Window", number: true }, { title: "Grains", number: true }, { title: "Status" }],
-    runs.map((run, k) => [[swatch(k), " ", reportLink(run)], rateText(run, unit), windowText(run), grouped(run.summary?.particles), run.summary?.status ?? "not ended"])),
+    runs.map((run) => [[swatch(run.colour), " ", reportLink(run)], rateText(run, unit), windowText(run), grouped(run.summary?.particles), run.summary?.status ?? "not ended"])),
     note("± is one standard error, from the scatter within the run's steady window.")];
 };
 

@@ -3,7 +3,7 @@
 const kShares = { step: "contacts and motion", history: "contact history", sort: "sorting", pair_search: "search of pairs", solid_search: "search of walls and fibres", checkpoints: "checkpoints" };
 
 const timeShares = (s) => {
-  const parts = Object.entries(s.wall_seconds ?? {}).filter(([, seconds]) => isNumber(seconds)).map(([key, seconds]) => [kShares[key] ?? inWords(key).toLowerCase(), seconds]);
+  const parts = Object.entries(s.wall_seconds ?? {}).filter(([, seconds]) => isNumber(seconds)).map(([key, seconds]) => [kShares[key] ?? lowerFirst(inWords(key)), seconds]);
   if (isNumber(s.checkpoints?.seconds)) parts.push([kShares.checkpoints, s.checkpoints.seconds]);
   const other = s.wall_time_s - parts.reduce((sum, [, seconds]) => sum + seconds, 0);
   if (other > 0) parts.push(["placing, measuring, writing", other]);
@@ -41,6 +41,6 @@ addSection({
     const ended = runs.filter((run) => run.summary);
     if (ended.length === 0) return null;
     return table([{ title: "Run" }, { title: "Million particle-steps/s", number: true }, { title: "Wall time", number: true }, { title: "Threads", number: true }, { title: "Memory", number: true }],
-      ended.map(({ name, summary: s }) => [name, significant(s.particle_steps_per_second / 1e6), duration(s.wall_time_s), s.threads, withUnit("bytes", s.peak_rss_bytes)]));
+      ended.map(({ label, summary: s }) => [label, significant(s.particle_steps_per_second / 1e6), duration(s.wall_time_s), s.threads, withUnit("bytes", s.peak_rss_bytes)]));
   },
 });

@@ -16,17 +16,17 @@ const zoomPicture = (picture) => {
 const figure = (picture) =>
   h("figure", {},
     h("button", { type: "button", class: "picture", "aria-label": `Enlarge ${captionOf(picture)}`, click: () => zoomPicture(picture) },
-      h("img", { src: picture.uri, alt: captionOf(picture), width: picture.width, height: picture.height, loading: "lazy" })),
+      h("img", { src: picture.uri, alt: captionOf(picture), width: picture.width, height: picture.height })),
     h("figcaption", {}, captionOf(picture)));
 
 // The pictures of one folder of each run; null if there are none.
 const gallery = (runs, folder) => {
-  const parts = runs.map((run, index) => {
+  const parts = runs.map((run) => {
     const pictures = run.pictures.filter((p) => p.folder === folder);
     if (pictures.length === 0) return null;
     const out = pictures.find((p) => p.left_out)?.left_out;
     return [
-      runs.length > 1 && h("h3", {}, swatch(index), " ", run.name),
+      runs.length > 1 && h("h3", {}, swatch(run.colour), " ", run.label),
       h("div", { class: "gallery" }, pictures.filter((p) => p.uri).map(figure)),
       out && note(`${grouped(out)} more in `, h("a", { href: `${run.link}/${folder}/` }, `${folder}/`), "."),
     ];

@@ -7,19 +7,19 @@ const isCurve = (t) => t.data.length > 1 && t.data[0].length > 2 && t.data.every
   && t.data[0].every((x, k) => k === 0 || x > t.data[0][k - 1]);
 
 const residenceCurves = (runs, name) => {
-  const having = runs.map((run, index) => ({ run, index, t: run.tables[name] })).filter(({ t }) => t && isCurve(t));
+  const having = runs.map((run) => ({ run, t: run.tables[name] })).filter(({ t }) => t && isCurve(t));
   const t = having[0].t;
   return t.columns.slice(1).map((column, k) => {
     const { x, ys } = onCommonAxis(having.map((one) => ({ x: one.t.data[0], y: one.t.data[k + 1] })));
-    return chart({ x, xName: inWords(t.columns[0]).toLowerCase(), xText: (v) => significant(v, 4), xLabel: inWords(t.columns[0]).toLowerCase(), yLabel: inWords(column).toLowerCase(),
-      series: having.map(({ run, index }, j) => ({ label: runs.length > 1 ? run.name : inWords(column).toLowerCase(), values: ys[j], colour: colourOf(index), text: (v) => significant(v, 4) })) });
+    return chart({ x, xName: lowerFirst(inWords(t.columns[0])), xText: (v) => significant(v, 4), xLabel: lowerFirst(inWords(t.columns[0])), yLabel: lowerFirst(inWords(column)),
+      series: having.map(({ run }, j) => ({ label: runs.length > 1 ? run.label : lowerFirst(inWords(column)), values: ys[j], colour: colourOf(run.colour), text: (v) => significant(v, 4) })) });
   });
 };
 
 const residenceTable = (runs, name) => runs.filter((run) => run.tables[name]).map((run) => {
   const t = run.tables[name], rows = Math.min(t.data[0].length, kMostTableRows);
   return [
-    runs.length > 1 && h("h4", {}, run.name),
+    runs.length > 1 && h("h4", {}, run.label),
     table(t.columns.map((c, k) => ({ title: inWords(c), number: isNumber(t.data[k][0]) })),
       Array.from({ length: rows }, (_, k) => t.data.map((column) => valueText(column[k])))),
     t.rows > rows && note(`${grouped(t.rows - rows)} more rows in ${name}.csv.`),

@@ -2,14 +2,16 @@
 
 const labelsOf = (sweep, values) => values.map((v, k) => sweep.parameters[k].values[v].text);
 
-// The mean of rates and its standard error: over the runs if there are two or more, else the run's own.
+// The mean of rates and its standard error: the larger of the scatter over the runs and of what the runs' own errors
+// make. Two or three seeds may lie close by chance.
 const meanOf = (runs) => {
   const rates = runs.map(rateOf).filter(isNumber);
   if (rates.length === 0) return null;
   const mean = rates.reduce((sum, r) => sum + r, 0) / rates.length;
-  if (rates.length === 1) return { mean, error: rateErrorOf(runs.find((run) => isNumber(rateOf(run)))), count: 1 };
+  const own = Math.hypot(...runs.filter((run) => isNumber(rateOf(run))).map((run) => rateErrorOf(run) ?? 0)) / rates.length;
+  if (rates.length === 1) return { mean, error: own };
   const square = rates.reduce((sum, r) => sum + (r - mean) ** 2, 0);
-  return { mean, error: Math.sqrt(square / (rates.length - 1) / rates.length), count: rates.length };
+  return { mean, error: Math.max(own, Math.sqrt(square / (rates.length - 1) / rates.length)) };
 };
 
 // Combinations in the order of the sweep: [{values, members: [of sweep.runs], results: [run]}].
@@ -36,7 +38,7 @@ const makeSweepTable = (data) => {
   const open = sweep.runs.filter((member) => member.status !== "done");
   const seeds = sweep.seeds.length > 1;
   return [
-    open.length > 0 && h("p", { class: "warning" }, `${open.length} of ${sweep.runs.length} runs are not done: repeat the sweep to go on with them.`),
+    open.length > 0 && h("p", { class: "warning" }, `${open.length} of ${sweep.runs.length} runs ${open.length === 1 ? "is" : "are"} not done: repeat the sweep to go on.`),
     table([...sweep.parameters.map((p) => ({ title: p.label, number: p.values.every((v) => isNumber(v.number)) })),
       { title: `Steady mass flow, ${unit[1]}`, number: true }, { title: "Runs" }],
       combinations.map(({ values, members, results }) => {
@@ -44,7 +46,7 @@ const makeSweepTable = (data) => {
         return [...labelsOf(sweep, values), mean ? withError(mean.mean / unit[0], mean.error / unit[0]) : "none",
           members.map((member, k) => [k > 0 && ", ", memberText(runs, member)])];
       })),
-    note(seeds ? "± is one standard error of the mean over the seeds (of a combination with one finished run: within its steady window)." : "± is one standard error, from the scatter within each run's steady window."),
+    note(seeds ? "± is one standard error of the mean: the larger of the scatter over the seeds and of the scatter within the runs' steady windows." : "± is one standard error, from the scatter within each run's steady window."),
     h("p", { class: "note" }, "The same as a table: ", h("a", { href: "sweep.csv" }, "sweep.csv"), "."),
   ];
 };
