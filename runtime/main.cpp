@@ -49,7 +49,9 @@ std::filesystem::path default_folder(const std::string& case_file) {
 // A page that cannot be written takes nothing from the run.
 void report_on(const std::filesystem::path& folder) {
   try {
-    fmt::print("report in {}\n", std::filesystem::absolute(scree::write_report(folder)).string());
+    const std::filesystem::path page = folder / scree::kReportFile;
+    scree::write_report(page, {folder});
+    fmt::print("report in {}\n", std::filesystem::absolute(page).string());
   } catch (const std::exception& e) {
     fmt::print(stderr, "scree: warning: no report: {}; `scree report {}` tries again\n", e.what(), folder.string());
   }
@@ -111,11 +113,10 @@ int resume(Arguments a) {
 
 int report(const Arguments& a) {
   for (const std::string& folder : a.folders) scree::require_run_folder(folder);
-  std::filesystem::path page = a.out.empty() ? std::string("comparison.html") : a.out;
-  if (a.folders.size() == 1 && a.out.empty())
-    page = scree::write_report(a.folders[0]);
-  else
-    scree::write_comparison(page, {a.folders.begin(), a.folders.end()});
+  std::filesystem::path page = a.out;
+  if (a.out.empty())
+    page = a.folders.size() > 1 ? "comparison.html" : std::filesystem::path(a.folders[0]) / scree::kReportFile;
+  scree::write_report(page, {a.folders.begin(), a.folders.end()});
   fmt::print("report in {}\n", std::filesystem::absolute(page).string());
   return kDone;
 }

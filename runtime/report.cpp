@@ -1,6 +1,7 @@
 #include "runtime/report.h"
 
 #include <algorithm>
+#include <map>
 
 #include "runtime/case_error.h"
 #include "runtime/results.h"
@@ -38,24 +39,26 @@ void require_run_folder(const fs::path& folder) {
     throw CaseError({folder.string(), 0, 0}, "is not the results folder of a run: it has no case.toml");
 }
 
-fs::path write_report(const fs::path& folder) {
-  ReportJson run = run_data(folder, folder, PictureBudget{});
-  ReportJson data;
-  data["title"] = run.contains("case") ? run["case"].value("title", "") : "";
-  data["runs"].push_back(std::move(run));
-  const fs::path page = folder / "report.html";
-  write_page(page, data);
-  return page;
+PictureBudget shared_by(size_t runs) {
+  PictureBudget budget;
+  budget.count = std::max<size_t>(1, budget.count / std::max<size_t>(1, runs));
+  budget.bytes /= std::max<size_t>(1, runs);
+  return budget;
 }
 
-void write_comparison(const fs::path& page, const std::vector<fs::path>& folders) {
-  ReportJson data;
-  data["title"] = fmt::format("{} runs compared", folders.size());
-  PictureBudget budget;
-  budget.count = std::max<size_t>(1, budget.count / folders.size()), budget.bytes /= folders.size();
+void write_report(const fs::path& page, const std::vector<fs::path>& folders) {
+  const fs::path beside = page.parent_path().empty() ? "." : page.parent_path();
+  ReportJson data = {{"title", fmt::format("{} runs compared", folders.size())}, {"runs", ReportJson::array()}};
+  std::map<std::string, int> names;
   for (const fs::path& folder : folders) {
-    require_run_folder(folder);
-    data["runs"].push_back(run_data(folder, page.parent_path().empty() ? "." : page.parent_path(), budget));
+    data["runs"].push_back(run_data(folder, beside, shared_by(folders.size())));
+    ++names[data["runs"].back()["name"]];
+  }
+  for (ReportJson& run : data["runs"])
+    if (names[run["name"]] > 1) run["name"] = run["link"];
+  if (folders.size() == 1) {
+    const ReportJson& run = data["runs"][0];
+    data["title"] = run.contains("case") && run["case"].contains("title") ? run["case"]["title"] : run["name"];
   }
   write_page(page, data);
 }

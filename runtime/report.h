@@ -10,11 +10,13 @@ namespace scree {
 
 extern const std::string_view kReportPage;  // HTML with one mark where the data goes
 
-// The page of one run, at folder/report.html; returns its path. Throws RunError if it cannot be written.
-std::filesystem::path write_report(const std::filesystem::path& folder);
+inline constexpr const char* kReportFile = "report.html";  // in the folder of a run or a sweep
 
-// A page that compares several runs. Throws RunError, and CaseError for a folder that holds no run.
-void write_comparison(const std::filesystem::path& page, const std::vector<std::filesystem::path>& folders);
+// The page of one run, or one that compares several. Throws RunError if it cannot be written.
+void write_report(const std::filesystem::path& page, const std::vector<std::filesystem::path>& folders);
+
+// The pictures that each of so many runs may bring.
+PictureBudget shared_by(size_t runs);
 
 // `data`: {title, runs: [run_data(), ...], sweep?}. Throws RunError.
 void write_page(const std::filesystem::path& page, const ReportJson& data);

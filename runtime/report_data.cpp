@@ -13,7 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostRows = 4000;   // of a table in the page: more than a screen has columns
+constexpr size_t kMostRows = 4000;  // of a table in the page: more than a screen has columns
+// The tables that the page shows, by how their names begin; others may be as long as the surface has patches.
+constexpr const char* kTables[] = {"mass_flow", "meters", "residence", "retained"};
 constexpr size_t kMostFiles = 2000;  // in the list
 
 ReportJson to_json(const CaseNode& node) {
@@ -60,12 +62,16 @@ bool next_row(std::ifstream& stream, std::string& line) {
   return false;
 }
 
+bool is_shown(const std::string& stem) {
+  return std::ranges::any_of(kTables, [&](const char* table) { return stem.starts_with(table); });
+}
+
 ReportJson tables_of(const fs::path& folder) {
   ReportJson tables = ReportJson::object();
   std::error_code error;
   std::vector<fs::path> files;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (at->path().extension() == ".csv") files.push_back(at->path());
+    if (at->path().extension() == ".csv" && is_shown(at->path().stem().string())) files.push_back(at->path());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files)
     if (ReportJson table = csv_columns(file); !table.is_null()) tables[file.stem().string()] = std::move(table);

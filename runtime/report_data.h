@@ -21,7 +21,7 @@ struct PictureBudget {
 //   link      the folder as seen from `page_folder`, for links
 //   summary   summary.json; missing while the run goes on
 //   case      case.toml as a tree
-//   tables    every *.csv of the folder, column by column, every n-th row if it is long
+//   tables    the *.csv that the page shows (kTables), column by column, every n-th row if they are long
 //   pictures  see report_pictures.h
 //   files     [{file, bytes}], sorted, of the folder and what it holds
 ReportJson run_data(const std::filesystem::path& folder, const std::filesystem::path& page_folder,

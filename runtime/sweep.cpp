@@ -1,6 +1,7 @@
 #include "runtime/sweep.h"
 
 #include <algorithm>
+#include <fstream>
 #include <thread>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "kernels/parallel.h"
 #include "runtime/child_process.h"
 #include "runtime/progress.h"
+#include "runtime/report.h"
 #include "runtime/run_folder.h"
 #include "runtime/sweep_results.h"
 
@@ -17,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kConsole = "console.log";        // what a run says, in its folder
+constexpr int kInterrupted = 130;                      // exit code of a run that was asked to stop
 constexpr auto kLook = std::chrono::milliseconds(50);  // between looks at the processes
 
 struct Job {
@@ -63,14 +67,25 @@ void print_list(const std::vector<Job>& jobs) {
   }
 }
 
+// The last that a run said, which is why it ended as it did.
+std::string last_line(const fs::path& path) {
+  std::ifstream stream(path);
+  std::string last;
+  for (std::string line; std::getline(stream, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
 // One line about a run that has ended.
 std::string told(const Job& job, int exit_code) {
   const ReportJson s = summary_in(job.folder);
   const auto number = [&](const char* key) {
     return s.is_object() && s.contains(key) && s[key].is_number() ? std::optional(s[key].get<double>()) : std::nullopt;
   };
+  if (exit_code == kInterrupted) return "interrupted: a repeat of the sweep goes on";
   if (exit_code != 0)
-    return fmt::format("ended with code {}: see {}", exit_code, (job.folder / "console.log").string());
+    return fmt::format("ended with code {}: {} ({})", exit_code, last_line(job.folder / kConsole),
+                       (job.folder / kConsole).string());
   const auto rate = number("steady_mass_flow_kg_per_s"), error = number("steady_mass_flow_standard_error_kg_per_s"),
              wall = number("wall_time_s");
   const std::string time = wall ? fmt::format(" ({})", duration_text(*wall)) : "";
@@ -102,7 +117,7 @@ class JobQueue {
 
   void start(const Job& job) {
     fs::create_directories(job.folder);
-    running_.push_back({&job, ChildProcess(job.arguments, job.folder / "console.log")});
+    running_.push_back({&job, ChildProcess(job.arguments, job.folder / kConsole)});
   }
   void stop() {  // nothing new begins; what runs saves its state
     if (!stopped_)
@@ -143,7 +158,7 @@ SweepEnd run_sweep(const std::string& sweep_file, const SweepOptions& options) {
     end = JobQueue(jobs, skipped, options).run();
   }
   write_sweep_results(plan, options.out);
-  fmt::print("report in {}\n", fs::absolute(options.out / "report.html").string());
+  fmt::print("report in {}\n", fs::absolute(options.out / kReportFile).string());
   return end;
 }
 

@@ -72,8 +72,6 @@ ReportJson page_data(const SweepPlan& plan, const fs::path& out) {
   ReportJson& sweep = data["sweep"];
   sweep = {{"parameters", ReportJson::array()}, {"seeds", plan.seeds}, {"runs", ReportJson::array()}};
   for (const SweepParameter& p : plan.parameters) sweep["parameters"].push_back(parameter_data(p));
-  PictureBudget budget;
-  budget.count = std::max<size_t>(1, budget.count / plan.runs.size()), budget.bytes /= plan.runs.size();
   for (const SweepRun& run : plan.runs) {
     const fs::path folder = out / run.name;
     const bool has_results = fs::exists(folder / "summary.json");
@@ -82,7 +80,7 @@ ReportJson page_data(const SweepPlan& plan, const fs::path& out) {
                              {"seed", run.seed ? ReportJson(*run.seed) : ReportJson()},
                              {"status", status_of(run, folder)},
                              {"run", has_results ? ReportJson(data["runs"].size()) : ReportJson()}});
-    if (has_results) data["runs"].push_back(run_data(folder, out, budget));
+    if (has_results) data["runs"].push_back(run_data(folder, out, shared_by(plan.runs.size())));
   }
   return data;
 }
@@ -111,7 +109,7 @@ std::string status_of(const SweepRun& run, const fs::path& folder) {
 
 void write_sweep_results(const SweepPlan& plan, const fs::path& out) {
   write_file(out / "sweep.csv", sweep_csv(plan, out));
-  write_page(out / "report.html", page_data(plan, out));
+  write_page(out / kReportFile, page_data(plan, out));
 }
 
 }  // namespace scree

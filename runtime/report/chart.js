@@ -88,6 +88,7 @@ const seriesOptions = (s) => ({
   stroke: cssColour(s.colour),
   width: s.width ?? 1.75,
   dash: s.dash,
+  paths: s.steps ? uPlot.paths.stepped({ align: 1 }) : undefined,
   points: s.markers ? { show: true, size: 8, fill: cssColour(s.colour) } : { show: false },
   value: (u, value) => (isNumber(value) ? s.text(value) : "–"),
 });
@@ -117,7 +118,7 @@ const chartOptions = (c, width) => ({
 
 // A chart that fills its parent's width:
 //   x, xName, xText(value), xLabel   the axis; xText is the read-out's
-//   series  [{label, values, colour, text(value), dash?, width?, markers?, errors?}]
+//   series  [{label, values, colour, text(value), dash?, width?, markers?, errors?, steps?}]
 //   yLabel, bands? [{from, to}], marks? [{at, label}], sync? (charts that move and zoom together), xRange?, yRange?
 const chart = (c) => {
   const holder = h("div", { class: "chart" });

@@ -135,6 +135,16 @@ test("pictures are in the page itself, with captions, and open large", async () 
   await close();
 });
 
+test("touch maps, residence and retention are told as numbers", async () => {
+  const { page, close } = await open(browser, reportOf(full));
+  assert.deepEqual(await page.locator("#touch tbody tr").allTextContents(), ["Fibres62 %25 %", "Fibres, upper half90 %2 %", "Channel50 %10 %"]);
+  assert.match(await page.locator("#residence").textContent(), /500 mg of 1\.00 g that entered/);
+  const [time, share] = await readOut(page, "residence", 0, 0.5);
+  assert.ok(Math.abs(number(time) - 0.2) < 0.11 && [2, 6].some((s) => Math.abs(number(share) - s) < 1e-6), `${share} at ${time}`);
+  assert.deepEqual(await page.locator("#residence tbody tr").allTextContents(), ["5, 0, 103.0030", "0, 0, 101.0010"]);
+  await close();
+});
+
 test("of many pictures an even choice is shown, and the page says how many there are besides", async () => {
   const many = writeRun(join(place.folder, "many"));
   addPicturesAndFields(many);

@@ -61,11 +61,21 @@ TEST(ReportData, a_folder_with_nothing_readable_in_it_still_makes_a_page) {
   folder.write("run/summary.json", "{\"status\": ");
   folder.write("run/pictures/half.png", "\x89PNG");
   folder.write("run/mass_flow.csv", "");
-  write_report(folder.path("run"));
+  write_report(folder.path("run/report.html"), {folder.path("run")});
   const ReportJson run = run_data(folder.path("run"), folder.path("run"), {});
   EXPECT_FALSE(run.contains("case"));
   EXPECT_FALSE(run.contains("summary"));
   EXPECT_TRUE(text_of(folder.path("run/report.html")).ends_with("</html>\n"));
+}
+
+TEST(ReportData, runs_of_one_name_are_told_apart_by_their_folders) {
+  const testing::Folder folder;
+  for (const char* run : {"a/demo", "b/demo", "other"})
+    folder.write(std::string(run) + "/case.toml", "title = \"x\"\n");
+  write_report(folder.path("page.html"), {folder.path("a/demo"), folder.path("b/demo/"), folder.path("other")});
+  const std::string page = text_of(folder.path("page.html"));
+  for (const char* name : {"\"name\":\"a/demo\"", "\"name\":\"b/demo\"", "\"name\":\"other\""})
+    EXPECT_NE(page.find(name), std::string::npos) << name;
 }
 
 TEST(ReportData, nothing_in_the_data_ends_the_script_that_holds_it) {
@@ -80,7 +90,7 @@ TEST(ReportData, text_that_is_no_utf8_does_not_stop_the_report) {
   const testing::Folder folder;
   folder.write("run/case.toml", "title = \"x\"\n");
   folder.write("run/residence.csv", "place,kg\n\xff\xfe,1\n");
-  EXPECT_NO_THROW(write_report(folder.path("run")));
+  EXPECT_NO_THROW(write_report(folder.path("run/report.html"), {folder.path("run")}));
 }
 
 TEST(ReportData, the_page_refers_to_no_other_file) {

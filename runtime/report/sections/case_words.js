@@ -28,7 +28,7 @@ const latticeText = (c, summary) => {
   if (!lattice) return list(c.fibres).length > 0 ? [`${grouped(summary?.fibres)} fibres`, porosity].filter(Boolean).join(", ") : null;
   const size = list(lattice.cells).map((n) => n * lattice.cell_size);
   return [`${lattice.kind} of ${cellsText(lattice)}`, size.length === 3 && lengths(size),
-    isNumber(lattice.fibre_diameter) && `fibres ${given("length", lattice.fibre_diameter)} in diameter (${grouped(summary?.fibres)} of them)`, porosity]
+    isNumber(lattice.fibre_diameter) ? `fibres ${given("length", lattice.fibre_diameter)} in diameter (${grouped(summary?.fibres)} of them)` : `${grouped(summary?.fibres)} fibres`, porosity]
     .filter(Boolean).join("; ");
 };
 

@@ -8,8 +8,13 @@ const kFileWords = [
   [/^failure\.vtp$/, "the particles round the place of the failure"],
   [/^case\.toml$/, "the case in full, defaults filled in: can be run again"],
   [/^run\.log$/, "what happened when"],
-  [/^residence.*\.csv$/, "residence times"],
-  [/^retention.*\.csv$/, "what stayed behind, and where"],
+  [/^console\.log$/, "what the program said"],
+  [/^checkpoints\/$/, "states that the run can go on from"],
+  [/^pictures\/$/, "pictures"],
+  [/^fields\/$/, "particles and walls over time, for ParaView"],
+  [/^residence\.csv$/, "mass by residence time"],
+  [/^retained\.csv$/, "mass left at each junction"],
+  [/^touch\.csv$/, "how much each fibre and wall is touched"],
 ];
 // Folders are one row each: they may hold hundreds of files.
 const rowsOfFiles = (run) => {
@@ -22,7 +27,7 @@ const rowsOfFiles = (run) => {
   }
   return [...rows].map(([name, { count, bytes }]) => [
     h("a", { href: `${run.link}/${name}` }, name),
-    name.endsWith("/") ? `${grouped(count)} file${count === 1 ? "" : "s"}` : (kFileWords.find(([pattern]) => pattern.test(name))?.[1] ?? ""),
+    [kFileWords.find(([pattern]) => pattern.test(name))?.[1], name.endsWith("/") && `${grouped(count)} file${count === 1 ? "" : "s"}`].filter(Boolean).join(": "),
     withUnit("bytes", bytes)]);
 };
 
