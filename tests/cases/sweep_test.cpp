@@ -117,7 +117,7 @@ TEST_F(Sweep, runs_that_are_done_are_skipped_and_new_ones_added) {
 }
 
 TEST_F(Sweep, asked_to_stop_its_runs_save_their_states_and_a_repeat_goes_on) {
-  write("[1]", "3e-3", "0.2");
+  write("[1]", "2e-3", "0.1");
   const pid_t pid = start();
   wait_for(run(kRuns[0]) / "mass_flow.csv");
   kill(pid, SIGINT);
@@ -127,11 +127,11 @@ TEST_F(Sweep, asked_to_stop_its_runs_save_their_states_and_a_repeat_goes_on) {
   EXPECT_TRUE(fs::exists(out() / "report.html"));
   ASSERT_EQ(sweep(), 0) << said();
   EXPECT_FALSE(read_summary(run(kRuns[0]))["resumed_from"].is_null());
-  EXPECT_EQ(hash_of(run(kRuns[0])), undisturbed("cdt", "1", "3e-3", "0.2"));
+  EXPECT_EQ(hash_of(run(kRuns[0])), undisturbed("cdt", "1", "2e-3", "0.1"));
 }
 
 TEST_F(Sweep, killed_itself_its_runs_save_their_states_and_a_repeat_goes_on) {
-  write("[1]", "3e-3", "0.2");
+  write("[1]", "2e-3", "0.1");
   const pid_t pid = start();
   wait_for(run(kRuns[0]) / "mass_flow.csv");
   kill(pid, SIGKILL);
@@ -139,11 +139,11 @@ TEST_F(Sweep, killed_itself_its_runs_save_their_states_and_a_repeat_goes_on) {
   wait_for(run(kRuns[0]) / "report.html");  // the last that a run does
   EXPECT_EQ(read_summary(run(kRuns[0]))["status"], "interrupted");
   ASSERT_EQ(sweep(), 0) << said();
-  EXPECT_EQ(hash_of(run(kRuns[0])), undisturbed("cdt", "1", "3e-3", "0.2"));
+  EXPECT_EQ(hash_of(run(kRuns[0])), undisturbed("cdt", "1", "2e-3", "0.1"));
 }
 
 TEST_F(Sweep, a_run_that_is_killed_is_told_the_others_go_on_and_a_repeat_makes_it_whole) {
-  write("[1]", "3e-3", "0.2");
+  write("[1]", "2e-3", "0.1");
   const pid_t pid = start();
   wait_for(run(kRuns[0]) / "mass_flow.csv");
   const pid_t child = static_cast<pid_t>(std::stol(text_of(run(kRuns[0]) / "lock")));
@@ -153,7 +153,7 @@ TEST_F(Sweep, a_run_that_is_killed_is_told_the_others_go_on_and_a_repeat_makes_i
   EXPECT_NE(said().find("rolling_cdt__seed_1: ended with code 137"), std::string::npos) << said();
   EXPECT_EQ(read_summary(run(kRuns[2]))["status"], "done");
   ASSERT_EQ(sweep(), 0) << said();
-  EXPECT_EQ(hash_of(run(kRuns[0])), undisturbed("cdt", "1", "3e-3", "0.2"));
+  EXPECT_EQ(hash_of(run(kRuns[0])), undisturbed("cdt", "1", "2e-3", "0.1"));
 }
 
 TEST_F(Sweep, a_changed_file_that_contradicts_a_run_is_refused_with_the_key) {
@@ -162,9 +162,10 @@ TEST_F(Sweep, a_changed_file_that_contradicts_a_run_is_refused_with_the_key) {
   const std::string hash = hash_of(run(kRuns[0]));
   write("[1]", "0.4e-3", "0.03");
   EXPECT_EQ(sweep(), 2);
-  EXPECT_NE(said().find("holds a run of another case than the sweep file describes now: 'stage.fill.mass' was 0.0003 "
-                        "and is now 0.0004"),
-            std::string::npos)
+  EXPECT_NE(
+      said().find("holds a run of another case than the sweep file describes now: key 'stage.fill.mass' was 0.0003 "
+                  "and is now 0.0004"),
+      std::string::npos)
       << said();
   EXPECT_EQ(hash_of(run(kRuns[0])), hash);
 }
