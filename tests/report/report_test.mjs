@@ -32,7 +32,7 @@ const readOut = async (page, section, index, share) => {
   const box = await over.boundingBox();
   await page.mouse.move(box.x + share * box.width, box.y + box.height / 2);
   const chart = page.locator(`#${section} .chart`).nth(index);
-  await page.waitForTimeout(100);
+  await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
   return chart.locator(".u-value").allTextContents();
 };
 
@@ -141,7 +141,7 @@ test("touch maps, residence and retention are told as numbers", async () => {
   assert.match(await page.locator("#residence").textContent(), /500 mg of 1\.00 g that entered/);
   const [time, share] = await readOut(page, "residence", 0, 0.5);
   assert.ok(Math.abs(number(time) - 0.2) < 0.11 && [2, 6].some((s) => Math.abs(number(share) - s) < 1e-6), `${share} at ${time}`);
-  assert.deepEqual(await page.locator("#residence tbody tr").allTextContents(), ["5, 0, 103.0030", "0, 0, 101.0010"]);
+  assert.deepEqual(await page.locator("#residence .table-box tbody tr").allTextContents(), ["5, 0, 103.0030", "0, 0, 101.0010"]);
   await close();
 });
 
