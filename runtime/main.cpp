@@ -14,8 +14,10 @@
 #include "runtime/case_error.h"
 #include "runtime/case_reader.h"
 #include "runtime/render/options.h"
+#include "runtime/report.h"
 #include "runtime/run_folder.h"
 #include "runtime/simulation.h"
+#include "runtime/sweep.h"
 #include "runtime/time_scales.h"
 
 namespace {
@@ -27,6 +29,8 @@ void request_stop(int) { stop_requested = 1; }
 
 struct Arguments {
   std::string case_file, out, isa;
+  std::vector<std::string> folders;
+  scree::SweepOptions sweep;
   uint64_t check_lists = scree::EngineOptions{}.list_check_interval;
   std::vector<std::string> set;
   int threads = 0;
@@ -42,6 +46,17 @@ std::filesystem::path default_folder(const std::string& case_file) {
   std::filesystem::path folder = base;
   for (int k = 2; std::filesystem::exists(folder); ++k) folder = base.string() + fmt::format("-{}", k);
   return folder;
+}
+
+// A page that cannot be written takes nothing from the run.
+void report_on(const std::filesystem::path& folder) {
+  try {
+    const std::filesystem::path page = folder / scree::kReportFile;
+    scree::write_report(page, {folder});
+    fmt::print("report in {}\n", std::filesystem::absolute(page).string());
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "scree: warning: no report: {}; `scree report {}` tries again\n", e.what(), folder.string());
+  }
 }
 
 int run(const Arguments& a) {
@@ -79,6 +94,7 @@ int run(const Arguments& a) {
   else if (result.status == scree::RunStatus::done)
     fmt::print("no steady mass flow: the run has no drain, or its discharge has no plateau (see mass_flow.csv)\n");
   fmt::print("results in {}\n", std::filesystem::absolute(result.out).string());
+  if (std::filesystem::exists(result.out / "summary.json")) report_on(result.out);
   if (result.status == scree::RunStatus::failed) fmt::print(stderr, "scree: the run failed: {}\n", result.message);
   if (result.status == scree::RunStatus::interrupted)
     fmt::print(stderr, "scree: interrupted; the results so far are complete\n");
@@ -97,6 +113,28 @@ int resume(Arguments a) {
   }
   a.case_file = case_file.string(), a.resume = true;
   return run(a);
+}
+
+int report(const Arguments& a) {
+  for (const std::string& folder : a.folders) scree::require_run_folder(folder);
+  std::filesystem::path page = a.out;
+  if (a.out.empty())
+    page = a.folders.size() > 1 ? "comparison.html" : std::filesystem::path(a.folders[0]) / scree::kReportFile;
+  scree::write_report(page, {a.folders.begin(), a.folders.end()});
+  fmt::print("report in {}\n", std::filesystem::absolute(page).string());
+  return kDone;
+}
+
+int sweep(Arguments a) {
+  scree::SweepOptions& options = a.sweep;
+  options.out = a.out;
+  if (a.out.empty()) options.out = std::filesystem::path("results") / std::filesystem::path(a.case_file).stem();
+  options.threads = a.threads;
+  options.stop = &stop_requested;
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  const scree::SweepEnd end = scree::run_sweep(a.case_file, options);
+  return end == scree::SweepEnd::done ? kDone : end == scree::SweepEnd::failed ? kFailed : kInterrupted;
 }
 
 int check(const Arguments& a) {
@@ -130,6 +168,24 @@ void add_case_options(CLI::App& command, Arguments& a) {
   add_threads_option(command, a);
 }
 
+CLI::App& add_report(CLI::App& app, Arguments& a) {
+  CLI::App& command = *app.add_subcommand("report", "make a run's report.html again, or compare several runs");
+  command.add_option("DIR", a.folders, "results folders")->required();
+  command.add_option("--out", a.out, "the page (default: DIR/report.html of one run, comparison.html of several)");
+  return command;
+}
+
+CLI::App& add_sweep(CLI::App& app, Arguments& a) {
+  CLI::App& command = *app.add_subcommand("sweep", "run a table of parameters; repeat it to go on");
+  command.add_option("SWEEP", a.case_file, "the sweep file (TOML): see cases/olhx/sweep_porosity.toml")->required();
+  command.add_option("--out", a.out, "folder of the sweep (default: results/<sweep>)");
+  command.add_option("--jobs", a.sweep.jobs, "runs at a time, which share the threads")->check(CLI::Range(1, 4096));
+  command.add_flag("--list", a.sweep.list, "print the commands of the runs to do, one per line, for a cluster's array");
+  command.add_flag("--report", a.sweep.report_only, "only write sweep.csv and report.html of what is there");
+  add_threads_option(command, a);
+  return command;
+}
+
 void add_run_options(CLI::App& command, Arguments& a) {
   command.add_option("--isa", a.isa, "instruction set of the kernels (default: the best this machine has)")
       ->check(CLI::IsMember(scree::available_isas()));
@@ -151,8 +207,8 @@ int main(int argc, char** argv) {
       "  scree check cases/olhx/paper_088.toml   what would run, how long, how much memory\n"
       "  ls cases/examples                       one example per feature\n"};
   app.footer(
-      "Results: mass_flow.csv, meters.csv, summary.json, particles.vtp (ParaView, OVITO), case.toml, run.log, "
-      "pictures.\n"
+      "Results: report.html (open it in a browser), mass_flow.csv, meters.csv, summary.json, particles.vtp (ParaView,\n"
+      "OVITO), pictures, case.toml, run.log.\n"
       "A run that was interrupted, killed or failed goes on to the same bits:  scree resume DIR\n"
       "Exit codes: 0 done, 2 bad input, 3 the run failed, 130 interrupted (Ctrl-C ends a run cleanly).");
   app.set_version_flag("--version", "scree 0.1.0");
@@ -176,6 +232,7 @@ int main(int argc, char** argv) {
   scree::RenderArguments pictures;
   CLI::App& render_command = scree::add_render_command(app, pictures);
   add_threads_option(render_command, a);
+  CLI::App &report_command = add_report(app, a), &sweep_command = add_sweep(app, a);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -184,6 +241,8 @@ int main(int argc, char** argv) {
   }
   try {
     if (render_command.parsed()) return render(a, pictures);
+    if (report_command.parsed()) return report(a);
+    if (sweep_command.parsed()) return sweep(a);
     return run_command.parsed() ? run(a) : resume_command.parsed() ? resume(a) : check(a);
   } catch (const scree::CaseError& e) {
     fmt::print(stderr, "scree: {}\n", e.what());

@@ -1,0 +1,59 @@
+// What must hold whatever was simulated: no particle lost, no mass lost, the energy ledger when there is one.
+
+const check = (holds, text) => h("li", { class: holds ? "holds" : "fails" }, h("strong", {}, holds ? "Holds. " : "Does not hold. "), text);
+
+// Mass is sums of doubles over the grains: equal but for rounding.
+const kRounding = 1e-9;
+
+const particleCheck = (s) => {
+  if (!isNumber(s.lost_particles)) return null;
+  const removed = s.particles - s.particles_left - s.lost_particles;
+  return check(s.lost_particles === 0, `Particles: ${grouped(s.particles)} placed = ${grouped(s.particles_left)} still in the run + ${grouped(removed)} taken out behind an outlet + ${grouped(s.lost_particles)} lost.`);
+};
+
+const askedMass = (run) => {
+  const stages = list(run.case?.stage).filter((s) => ["fill", "pour", "read"].includes(s.kind));
+  return stages.length > 0 && stages.every((s) => isNumber(s.mass) && s.mass > 0) ? stages.reduce((sum, s) => sum + s.mass, 0) : null;
+};
+
+// The mass is one grain above or below what was asked for at the most; grains of one kind are told by their mean mass.
+const massCheck = (run, s) => {
+  const out = s.mass_discharged_kg, left = s.mass_retained_kg;
+  if (!isNumber(out) || !isNumber(left)) return null;
+  const sum = out + left, asked = askedMass(run);
+  const text = `Mass: ${withUnit("mass", out, 5)} discharged + ${withUnit("mass", left, 5)} left = ${withUnit("mass", sum, 6)}`;
+  if (s.status !== "done" || asked === null) return h("li", {}, `${text}.`);
+  const grains = (sum - asked) / (sum / s.particles);
+  return check(Math.abs(grains) <= 20, `${text}; the case asks for ${withUnit("mass", asked, 6)}, which is ${significant(Math.abs(grains), 2)} grains ${grains > 0 ? "less" : "more"}.`);
+};
+
+const curveCheck = (run, s) => {
+  const columns = columnsOf(run, "mass_flow");
+  if (!columns?.discharged_kg || !isNumber(s.mass_discharged_kg)) return null;
+  const end = columns.discharged_kg[columns.discharged_kg.length - 1];
+  const falls = columns.discharged_kg.some((m, k) => k > 0 && m < columns.discharged_kg[k - 1] * (1 - kRounding));
+  return [
+    check(Math.abs(end - s.mass_discharged_kg) <= 1e-6 * Math.max(s.mass_discharged_kg, 1e-9), `The curve ends at ${withUnit("mass", end, 6)}, the mass that the outlets counted.`),
+    falls && h("li", {}, "Some grains came back through an outlet: the discharged mass falls now and then."),
+  ];
+};
+
+const checksOf = (run) => {
+  const s = run.summary;
+  if (!s) return null;
+  const ledger = s.energy ?? s.energy_ledger;
+  return [h("ul", { class: "checks" }, particleCheck(s), massCheck(run, s), curveCheck(run, s)),
+    ledger && [h("h3", {}, "Energy"), anyTable(ledger)]];
+};
+
+addSection({
+  id: "checks",
+  title: "Conservation",
+  make: ({ runs }) => {
+    if (runs.length === 1) return checksOf(runs[0]);
+    const ended = runs.filter((run) => run.summary);
+    if (ended.length === 0) return null;
+    return table([{ title: "Run" }, { title: "Lost particles", number: true }, { title: "Discharged", number: true }, { title: "Left", number: true }],
+      ended.map((run) => [run.label, grouped(run.summary.lost_particles), withUnit("mass", run.summary.mass_discharged_kg, 5), withUnit("mass", run.summary.mass_retained_kg, 5)]));
+  },
+});
