@@ -121,6 +121,8 @@ const chartOptions = (c, width) => ({
 //   series  [{label, values, colour, text(value), dash?, width?, markers?, errors?, steps?}]
 //   yLabel, bands? [{from, to}], marks? [{at, label}], sync? (charts that move and zoom together), xRange?, yRange?
 const chart = (c) => {
+  if (typeof uPlot === "undefined")
+    return note("This build of Scree has no charts: npm could not install the charting library. The curves are in the run's CSV files.");
   const holder = h("div", { class: "chart" });
   const reset = h("button", { class: "reset", type: "button", hidden: true, click: () => resetZoom(c.sync, me) }, "Whole curve");
   let plot = null, width = 0;

@@ -21,19 +21,13 @@ list(TRANSFORM report_scripts PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/report/)
 set(report_sources ${CMAKE_CURRENT_SOURCE_DIR}/report/page.html ${CMAKE_CURRENT_SOURCE_DIR}/report/style.css ${report_scripts})
 
 find_program(NPM npm)
-if(NOT NPM)
-  message(FATAL_ERROR "npm is missing: the report's charting library is installed with it (Debian: nodejs npm; cases/setup installs them)")
-endif()
-
 set(report_build ${CMAKE_CURRENT_BINARY_DIR}/report)
 set(report_npm_files ${CMAKE_CURRENT_SOURCE_DIR}/report/package.json ${CMAKE_CURRENT_SOURCE_DIR}/report/package-lock.json)
 add_custom_command(
   OUTPUT ${report_build}/npm_installed
-  COMMAND ${CMAKE_COMMAND} -E make_directory ${report_build}
-  COMMAND ${CMAKE_COMMAND} -E copy ${report_npm_files} ${report_build}
-  COMMAND ${NPM} ci --prefix ${report_build} --ignore-scripts --no-audit --no-fund --loglevel=error
-  COMMAND ${CMAKE_COMMAND} -E touch ${report_build}/npm_installed
-  DEPENDS ${report_npm_files}
+  COMMAND ${CMAKE_COMMAND} -D "NPM=$<$<BOOL:${NPM}>:${NPM}>" -D SOURCE=${CMAKE_CURRENT_SOURCE_DIR}/report -D FOLDER=${report_build}
+          -P ${CMAKE_CURRENT_SOURCE_DIR}/report/install_library.cmake
+  DEPENDS ${report_npm_files} ${CMAKE_CURRENT_SOURCE_DIR}/report/install_library.cmake
   COMMENT "Installing the report's charting library" VERBATIM)
 add_custom_command(
   OUTPUT ${report_build}/report_page.cpp
