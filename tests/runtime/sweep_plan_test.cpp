@@ -136,6 +136,13 @@ TEST(SweepPlan, wrong_files_are_refused_with_the_place_and_what_is_allowed) {
   }
 }
 
+TEST(SweepPlan, every_shipped_sweep_is_in_order) {
+  const std::filesystem::path cases = std::filesystem::path(SCREE_SOURCE_DIR) / "cases" / "olhx";
+  const std::pair<const char*, size_t> shipped[] = {{"porosity", 6}, {"friction", 6}, {"rolling", 4}};
+  for (const auto& [name, runs] : shipped)
+    EXPECT_EQ(read_sweep((cases / fmt::format("sweep_{}.toml", name)).string()).runs.size(), runs) << name;
+}
+
 TEST(SweepPlan, the_case_must_be_there) {
   const testing::Folder folder;
   for (const auto& [text, expected] : {std::pair("title = \"x\"\n", "key 'case': is missing"),
