@@ -1,9 +1,13 @@
+#include "runtime/field_files.h"
 #include "runtime/observer.h"
+#include "runtime/residence.h"
 
 namespace scree {
 
-std::vector<std::unique_ptr<Observer>> make_observers(const Case&, const std::filesystem::path&, double) {
+std::vector<std::unique_ptr<Observer>> make_observers(const Case& c, const std::filesystem::path& out, double dt) {
   std::vector<std::unique_ptr<Observer>> observers;
+  if (writes_fields(c.output.fields)) observers.push_back(std::make_unique<FieldFiles>(c, out, dt));
+  if (c.output.residence.enabled) observers.push_back(std::make_unique<Residence>(c, dt));
   return observers;
 }
 
