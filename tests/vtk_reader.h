@@ -17,7 +17,8 @@ inline bool has_vtk_reader() {
   static const bool has = std::system("python3 -c 'import vtkmodules.vtkIOHDF' 2>/dev/null") == 0;
   return has;
 }
-inline const char* const kNoVtkReader = "not tried: VTK's Python reader is not installed (apt-get install python3-vtk9)";
+inline const char* const kNoVtkReader =
+    "not tried: VTK's Python reader is not installed (apt-get install python3-vtk9)";
 
 struct VtkArray {
   uint64_t components = 0;

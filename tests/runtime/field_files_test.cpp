@@ -38,7 +38,8 @@ Case heap_case(Precision precision = Precision::mixed) {
 std::vector<ParticleState> heap(const Case& c) {
   std::vector<ParticleState> grains;
   for (int k = 0; k < 27; ++k)
-    grains.push_back(sphere(c, k % 2, {0.0026 * (k % 3) - 0.003, 0.0026 * (k / 3 % 3) + 0.002, 0.0016 + 0.0027 * (k / 9)},
+    grains.push_back(sphere(c, k % 2,
+                            {0.0026 * (k % 3) - 0.003, 0.0026 * (k / 3 % 3) + 0.002, 0.0016 + 0.0027 * (k / 9)},
                             {0.01 * k, 0, -0.1}, {1.0 * k, 2, 3}));
   return grains;
 }
@@ -91,7 +92,7 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
   EXPECT_NEAR(d.array("field_data", "time").values.at(0), s.engine->time(), 1e-15);
 
   const std::vector<ParticleState> particles = s.engine->particles();
-  const ContactSums sums = contact_sums(particles, s.engine->contacts());
+  const ContactSums sums = contact_sums(particles, *s.engine);
   const auto field = [&](const char* name) { return by_id(d, d.array("point_data", name)); };
   const auto position = by_id(d, d.points), velocity = field("velocity"), spin = field("angular_velocity"),
              force = field("force"), stress = field("contact_stress"), radius = field("radius"), kind = field("kind"),
@@ -111,7 +112,7 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
     EXPECT_EQ(kind.at(p.id)[0], p.kind);
     EXPECT_EQ(coordination.at(p.id)[0], sums.coordination[k]);
     EXPECT_EQ(walls.at(p.id)[0], sums.wall_contacts[k]);
-    for (int i = 0; i < 9; ++i) EXPECT_EQ(stress.at(p.id)[i], float(sums.stress[k][i]));
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(stress.at(p.id)[i], sums.stress[k][i]);
     EXPECT_NEAR(age.at(p.id)[0], p.id < 20 ? 0.018 : 0.009, 1e-8);
     touching += sums.coordination[k] + sums.wall_contacts[k];
   }
@@ -227,7 +228,8 @@ TEST(FieldFiles, OnlyNamedFieldsAreWritten) {
   fields.look(s.view());
   fields.finish(s.view());
   Hdf5Reader file(frame_path(s, "particles"));
-  for (const char* name : {"age", "id", "radius", "kind"}) EXPECT_TRUE(file.has(std::string("VTKHDF/PointData/") + name));
+  for (const char* name : {"age", "id", "radius", "kind"})
+    EXPECT_TRUE(file.has(std::string("VTKHDF/PointData/") + name));
   for (const char* name : {"velocity", "force"}) EXPECT_FALSE(file.has(std::string("VTKHDF/PointData/") + name));
 }
 
