@@ -28,8 +28,6 @@ void read_fields(TableReader t, Case& c) {
   const std::vector<std::string> known = particle_field_names();
   for (const std::string& name : t.texts("write", known)) {
     t.index_of("write", name, "field", known);
-    if (std::ranges::find(fields.write, name) != fields.write.end())
-      t.fail("write", fmt::format("'{}' is named twice", name));
     fields.write.push_back(name);
   }
   fields.solid = t.flag("solid", fields.solid);

@@ -1,8 +1,8 @@
 // DIR/fields: the particles, fibres and walls of a run at chosen moments, for ParaView.
 //
-//   particles.vtkhdf.series   opens all frames with their times; particles_STEP.vtkhdf is one
-//   (runtime/particle_fields.h) solid.vtkhdf.series       fibres and walls as a surface (runtime/solid_mesh.h): a frame
-//   whenever walls were opened
+//   particles.vtkhdf.series   opens all frames with their times; particles_STEP.vtkhdf is one: the fields are in
+//                             runtime/particle_fields.h
+//   solid.vtkhdf.series       fibres and walls as a surface (runtime/solid_mesh.h), a frame whenever walls were opened
 //
 // look() copies what is needed and goes on; a thread beside the run compresses and writes. One frame is in memory at a
 // time: if the one before is not written yet, look() waits. That and its making take kFieldBytesPerParticle.

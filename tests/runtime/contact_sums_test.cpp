@@ -74,13 +74,14 @@ TEST(ContactSums, OfAPairAcrossAPeriodicFaceAreTheSame) {
 TEST(ContactSums, StressOfARestingColumnCarriesTheWeightAbove) {
   for (const Precision precision : {Precision::reference, Precision::mixed}) {
     Case c = glass_case(precision);
+    c.time.step = 4e-6;
     c.gravity = {0, 0, -9.81};
     add_solid(c, floor_at(0, 0.01, 0));
     std::vector<ParticleState> column;
     for (int k = 0; k < 6; ++k) column.push_back(sphere(c, 0, {0, 0, kRadius * (1 + 2 * k)}));
     const auto engine = make_engine(c);
     engine->insert(column);
-    for (int k = 0; k < 60000; ++k) engine->step();
+    for (int k = 0; k < 20000; ++k) engine->step();
     std::vector<ParticleState> now = engine->particles();
     const ContactSums sums = contact_sums(now, *engine);
     const double weight = now[0].mass * 9.81;
@@ -101,13 +102,13 @@ TEST(ContactSums, StressOfARestingColumnCarriesTheWeightAbove) {
 
 TEST(ContactSums, CoordinationCountsTouchingPairs) {
   Case c = glass_case(Precision::mixed);
+  c.time.step = 5e-6, c.pairs[0].sliding_friction = 0.5;
   c.gravity = {0, 0, -9.81};
   add_solid(c, floor_at(0, 0.05, 0));
   std::vector<ParticleState> grains;
   for (int k = 0; k < 125; ++k)
     grains.push_back(sphere(
-        c, 0,
-        {0.0021 * (k % 5) + 0.0001 * (k % 7), 0.0021 * (k / 5 % 5) + 0.0001 * (k % 3), 0.0011 + 0.0021 * (k / 25)}));
+        c, 0, {0.0021 * (k % 5) + 1e-5 * (k % 7), 0.0021 * (k / 5 % 5) + 1e-5 * (k % 3), 0.0011 + 0.0021 * (k / 25)}));
   const auto engine = make_engine(c);
   engine->insert(grains);
   for (int k = 0; k < 15000; ++k) engine->step();

@@ -80,6 +80,7 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
   std::vector<ParticleState> grains = heap(s.c);
   s.engine->insert(std::span(grains).first(20));
   for (int k = 0; k < 900; ++k) s.engine->step();
+  for (ParticleState& late : std::span(grains).subspan(20)) late.position.z += 0.01;
   s.engine->insert(std::span(grains).subspan(20));
   for (int k = 0; k < 900; ++k) s.engine->step();
   fields.look(s.view());
