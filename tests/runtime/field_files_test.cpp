@@ -99,7 +99,9 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
              force = field("force"), stress = field("contact_stress"), radius = field("radius"), kind = field("kind"),
              coordination = field("coordination"), walls = field("wall_contacts"), age = field("age");
   const auto expect_vector = [](const std::vector<double>& found, const Vec3& wanted) {
-    EXPECT_EQ(found, (std::vector<double>{float(wanted.x), float(wanted.y), float(wanted.z)}));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.at(0)), static_cast<float>(wanted.x));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.at(1)), static_cast<float>(wanted.y));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.at(2)), static_cast<float>(wanted.z));
   };
   int touching = 0;
   for (size_t k = 0; k < particles.size(); ++k) {
