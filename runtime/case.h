@@ -12,6 +12,7 @@
 #include "geometry/solid.h"
 #include "kernels/contact_law.h"
 #include "runtime/render/picture_request.h"
+#include "runtime/schedule.h"
 
 namespace scree {
 
@@ -131,13 +132,30 @@ struct Meter {
   Vec3 min{}, max{};
 };
 
+// [output.fields]: field files for ParaView (runtime/field_files.h).
+struct FieldSettings {
+  Moments moments;                 // none: nothing is written
+  std::vector<std::string> write;  // of particle_field_names()
+  bool solid = true;               // fibres and walls, too
+};
+
+// [output.residence]: how long grains stay in a layer, and where they are left in it (runtime/residence.h).
+struct ResidenceSettings {
+  bool enabled = false;
+  double interval = 1e-3;      // s between looks: the resolution
+  double entry = 0, exit = 0;  // m, heights of the layer's top and bottom, entry > exit
+  double bin = 0;              // s, of residence.csv; 0: chosen to fit
+};
+
 struct OutputSettings {
   double interval = 1e-3;  // s between rows of mass_flow.csv and meters
   double steady_from = 0,
          steady_to = 0;  // s after the drain began: window of the steady flow; 0, 0: found automatically
   bool final_vtk = true;
-  bool energy_ledger = false;  // where the energy goes, in summary.json
+  bool energy_ledger = false;        // where the energy goes, in summary.json
   std::vector<RunPicture> pictures;  // runtime/render/run_pictures.h
+  FieldSettings fields;
+  ResidenceSettings residence;
 };
 
 struct CheckpointSettings {

@@ -86,6 +86,7 @@ void read_output(TableReader t, OutputSettings& output) {
     output.steady_to = window[1];
   }
   read_pictures(t, output.pictures);
+  for (const char* later : {"fields", "residence"}) t.has(later);  // read_observers(), when the rest is known
   t.finish();
 }
 
@@ -279,6 +280,7 @@ Case case_from(CaseNode tree, const std::string& path) {
   read_pairs(top, c);
   read_time(top, c);
   read_stages(top, c);
+  read_observers(top, c);
   check_rows(top, c);
   top.finish();
   c.understood = emit_toml(tree);

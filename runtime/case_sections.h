@@ -17,6 +17,7 @@ void read_solid(TableReader& top, Case& c);      // [lattice], [[fibres]], [[wal
 void read_pairs(TableReader& top, Case& c);      // [[pair]]: all that can touch
 void read_time(TableReader& top, Case& c);       // [time]
 void read_stages(TableReader& top, Case& c);     // [[stage]]
+void read_observers(TableReader& top, Case& c);  // [output.fields], [output.residence]
 
 // [domain], once the bounds of all static things are known (planes apart, which are cut to the domain).
 void read_domain(TableReader& top, Case& c, const Bounds& things);

@@ -89,6 +89,8 @@ void Domain<Real>::insert(std::span<const ParticleState> particles) {
   invalidate_lists();
   reserve(count_ + particles.size());
   counters_.inserted += particles.size();
+  if (!particles.empty() && (insertions_.empty() || insertions_.back().step != counters_.steps))
+    insertions_.push_back({next_id_, counters_.steps});
   for (const ParticleState& s : particles) {
     Particle<Real> p;
     p.x = s.position.x, p.y = s.position.y, p.z = s.position.z;
@@ -265,19 +267,30 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
 }
 
 template <class Real>
-std::vector<ContactState> Domain<Real>::contacts() const {
-  if (!lists_valid_) return {};
-  std::vector<std::vector<ContactState>> found(contacts_.size());
-  parallel_for(found.size(), [&](size_t c) {
-    visit_touching<Real>(chunk_task(c, nullptr), contacts_[c], [&](const TouchingContact& t) {
-      const bool solid = t.skeleton >= 0;
-      if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
-      found[c].push_back({t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point,
-                          t.force, t.slip, t.elastic_energy});
+void Domain<Real>::visit_contacts(const SeeContacts& see) const {
+  if (!lists_valid_) return;
+  constexpr size_t kAtOnce = 64;  // chunks
+  std::vector<std::vector<ContactState>> found(std::min(kAtOnce, contacts_.size()));
+  for (size_t first = 0; first < contacts_.size(); first += kAtOnce) {
+    const size_t last = std::min(first + kAtOnce, contacts_.size());
+    parallel_for(last - first, [&](size_t k) {
+      const size_t c = first + k;
+      found[k].clear();
+      visit_touching<Real>(chunk_task(c, nullptr), contacts_[c], [&](const TouchingContact& t) {
+        const bool solid = t.skeleton >= 0;
+        if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
+        found[k].push_back({t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point,
+                            t.force, t.slip, t.elastic_energy});
+      });
     });
-  });
+    for (size_t k = 0; k < last - first; ++k) see(found[k]);
+  }
+}
+
+template <class Real>
+std::vector<ContactState> Domain<Real>::contacts() const {
   std::vector<ContactState> result;
-  for (const auto& part : found) result.insert(result.end(), part.begin(), part.end());
+  visit_contacts([&](std::span<const ContactState> part) { result.insert(result.end(), part.begin(), part.end()); });
   return result;
 }
 

@@ -72,6 +72,11 @@ struct EnergyLedger {
   }
 };
 
+// Particles with ids from `first_id` on went in after `step` steps.
+struct Insertion {
+  uint64_t first_id = 0, step = 0;
+};
+
 struct EngineCounters {
   uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, inserted = 0, removed = 0;
   std::vector<double> removed_mass;  // kg, by what the removal rule said
@@ -152,6 +157,12 @@ class Engine {
   // Every contact that touches now, each once, with the force that the next step will apply; nothing between an
   // insertion or opening of walls and the next step. The same list for any number of threads.
   virtual std::vector<ContactState> contacts() const = 0;
+  virtual bool knows_contacts() const = 0;  // false: between those
+  // The same list in pieces, so that not all of it is in memory at once (128 B each, some three a particle).
+  using SeeContacts = std::function<void(std::span<const ContactState>)>;
+  virtual void visit_contacts(const SeeContacts& see) const = 0;
+
+  virtual const std::vector<Insertion>& insertions() const = 0;  // ascending
 };
 
 std::unique_ptr<Engine> make_engine(const Case& c, const EngineOptions& options = {});

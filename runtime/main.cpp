@@ -207,8 +207,8 @@ int main(int argc, char** argv) {
       "  scree check cases/olhx/paper_088.toml   what would run, how long, how much memory\n"
       "  ls cases/examples                       one example per feature\n"};
   app.footer(
-      "Results: report.html (open it in a browser), mass_flow.csv, meters.csv, summary.json, particles.vtp (ParaView,\n"
-      "OVITO), pictures, case.toml, run.log.\n"
+      "Results: report.html (open it in a browser), mass_flow.csv, meters.csv, summary.json, pictures/, fields/\n"
+      "(ParaView), residence.csv, retained.csv, particles.vtp (ParaView, OVITO), case.toml, run.log.\n"
       "A run that was interrupted, killed or failed goes on to the same bits:  scree resume DIR\n"
       "Exit codes: 0 done, 2 bad input, 3 the run failed, 130 interrupted (Ctrl-C ends a run cleanly).");
   app.set_version_flag("--version", "scree 0.1.0");

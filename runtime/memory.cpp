@@ -10,6 +10,8 @@
 #include <sstream>
 
 #include "runtime/case_size.h"
+#include "runtime/field_files.h"
+#include "runtime/residence.h"
 
 namespace scree {
 
@@ -111,7 +113,9 @@ double memory_of_particles(const Case& c, double count) {
 double memory_of_primitives(double count) { return count * kBytesPerPrimitive; }
 
 double memory_needed(const Case& c) {
-  return kFixedBytes + memory_of_particles(c, expected_particles(c)) +
+  const double observers = (writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0) +
+                           (c.output.residence.enabled ? kResidenceBytesPerParticle : 0);
+  return kFixedBytes + memory_of_particles(c, expected_particles(c)) + observers * expected_particles(c) +
          memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
 }
 
