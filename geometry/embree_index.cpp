@@ -61,6 +61,7 @@ struct Query {
   Vec3 x;
   double reach;
   std::vector<uint32_t>& found;
+  bool out_of_memory = false;
 
   void consider(uint32_t primitive) {
     if (distance(primitives[primitive], x) <= reach) found.push_back(primitive);
@@ -79,7 +80,7 @@ class EmbreeIndex final : public SolidIndex {
 
   void query(const Vec3& x, double reach, std::vector<uint32_t>& found) const override {
     const auto first = std::ptrdiff_t(found.size());
-    Query query{primitives_, x, reach, found};
+    Query query{primitives_, x, reach, found, false};
     const Vec3 local = x - centre_;
     const double magnitude = std::max(largest_coordinate(local), std::abs(reach));
     if (magnitude < kLargestLength) {
@@ -125,10 +126,12 @@ class EmbreeIndex final : public SolidIndex {
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_.get(), &sphere, &context, nullptr, &query);
+    if (query.out_of_memory) throw std::bad_alloc();
   }
 
   void require_no_error() const {
     const RTCError error = rtcGetDeviceError(device_.get());
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree failed with error {}", int(error)));
   }
 
@@ -137,9 +140,15 @@ class EmbreeIndex final : public SolidIndex {
     *arguments->bounds_o = float_bounds(index->bounds_[arguments->primID]);
   }
 
-  // Returns whether the query's radius has changed: never, every primitive in reach is wanted.
+  // Returns whether the query's radius has changed: never, every primitive in reach is wanted. Embree swallows what is
+  // thrown here, and would answer with half of the primitives.
   static bool query_callback(RTCPointQueryFunctionArguments* arguments) {
-    static_cast<Query*>(arguments->userPtr)->consider(arguments->primID);
+    auto& query = *static_cast<Query*>(arguments->userPtr);
+    try {
+      query.consider(arguments->primID);
+    } catch (const std::bad_alloc&) {
+      query.out_of_memory = true;
+    }
     return false;
   }
 

@@ -80,6 +80,8 @@ Checkpoints::Written Checkpoints::put(const std::string& name, const Save& save)
     fail(e.code().message());
   } catch (const RunError& e) {
     fail(e.what());
+  } catch (const std::bad_alloc&) {
+    fail("no memory is left for writing it");
   }
   return written;
 }
@@ -113,6 +115,8 @@ void Checkpoints::read(const fs::path& path, const Load& load) {
     throw CheckpointRefused(e.what());
   } catch (const Hdf5Error& e) {
     throw CheckpointRefused(e.what());
+  } catch (const StateRefused& e) {
+    throw CheckpointRefused(fmt::format("its values are no state of this case: {}", e.what()));
   } catch (const std::system_error& e) {
     throw CheckpointRefused("cannot be read: " + e.code().message());
   }

@@ -20,6 +20,9 @@ namespace {
 
 constexpr double kFailureReach = 10;  // radii of the largest particle: what failure.vtp shows round a failure
 
+constexpr const char* kOutOfMemory =
+    "out of memory: run fewer particles, or on a machine with more; `scree check` prints what a case needs";
+
 const char* text(RunStatus s) {
   return s == RunStatus::done ? "done" : s == RunStatus::interrupted ? "interrupted" : "failed";
 }
@@ -177,11 +180,11 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     fail(e.what());
     failed_at = e.where;
   } catch (const std::bad_alloc&) {
-    fail("out of memory: run fewer particles, or on a machine with more; `scree check` prints what a case needs");
+    fail(kOutOfMemory);
   }
-  if (!simulation) return result;
   if (const auto good = Checkpoints(options.out, c.checkpoint.keep).newest_first(); !good.empty())
     result.checkpoint = good.front().string();
+  if (!simulation) return result;
   try {
     result.steady = simulation->steady();
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
@@ -192,6 +195,8 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     log->info("{}", text(result.status));
   } catch (const RunError& e) {
     fail(result.message.empty() ? e.what() : result.message + "; and " + e.what());
+  } catch (const std::bad_alloc&) {
+    fail(result.message.empty() ? kOutOfMemory : result.message + "; and no memory is left for the results");
   }
   return result;
 }

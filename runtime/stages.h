@@ -81,19 +81,24 @@ class Simulation {
   }
   // Throws CheckpointRefused; the simulation is of no use then.
   void load(const std::filesystem::path& checkpoint) {
-    Checkpoints::read(checkpoint, [&](StateReader& in) {
-      CheckpointHead head;
-      in.load("head", head);
-      check_head(head, case_);
-      in.load("run", state_);
-      engine_->load(in);
-      for (size_t k = 0; k < state_.stage; ++k)
-        if (const auto* open = std::get_if<OpenStage>(&case_.stages[k].action)) take_out(walls_of(*open));
-      const auto* pour = state_.begun ? std::get_if<PourStage>(&case_.stages[state_.stage].action) : nullptr;
-      if (pour) in.load("pour", make_pour(*pour));
-    });
-    wall_before_ = state_.wall_seconds;
+    Checkpoints::read(checkpoint, [&](StateReader& in) { load(in); });
     resumed_from_ = checkpoint.filename().string();
+  }
+  // Throws CheckpointRefused, StateRefused or Hdf5Error.
+  void load(StateReader& in) {
+    CheckpointHead head;
+    in.load("head", head);
+    check_head(head, case_);
+    in.load("run", state_);
+    require_sound(state_, case_);
+    engine_->load(in);
+    for (size_t k = 0; k < state_.stage; ++k)
+      if (const auto* open = std::get_if<OpenStage>(&case_.stages[k].action)) take_out(walls_of(*open));
+    if (const auto* pour = state_.begun ? std::get_if<PourStage>(&case_.stages[state_.stage].action) : nullptr) {
+      in.load("pour", make_pour(*pour));
+      require_state(pour_->is_sound(), "its pour is at an impossible place");
+    }
+    wall_before_ = state_.wall_seconds;
   }
 
   const Engine& engine() const { return *engine_; }
