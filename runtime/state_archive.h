@@ -155,7 +155,7 @@ class StateReader {
     file_.end();
   }
 
-  Hdf5Reader& file_;
+  ArraySource& file_;
 };
 
 }  // namespace scree

@@ -4,12 +4,11 @@
 // An input picks one of a real run's checkpoints and edits its arrays: byte 0 the checkpoint, then for each edit a byte
 // for the array, one for what is done to it, two for where or how much, one for how many bytes follow, and these.
 #include <cstdint>
-#include <cstring>
-#include <map>
 
 #include <spdlog/sinks/null_sink.h>
 
 #include "runtime/stages.h"
+#include "tests/array_memory.h"
 #include "tests/fuzz/small_run.h"
 
 namespace scree::fuzz {
@@ -18,59 +17,7 @@ namespace {
 constexpr int kSteps = 3;         // before and after walls are opened
 constexpr size_t kMostEdits = 8;  // of one input
 
-struct Stored {
-  ElementType type{};
-  std::vector<char> bytes;
-};
-using Arrays = std::map<std::string, Stored>;
-
-bool same(const ElementType& a, const ElementType& b) { return a.kind == b.kind && a.size == b.size; }
-
-class Memory final : public ArraySource {
- public:
-  explicit Memory(const Arrays& arrays) : arrays_(arrays) {}
-  uint64_t begin(const std::string& name, const ElementType& type) override {
-    const auto found = arrays_.find(name);
-    if (found == arrays_.end() || !same(found->second.type, type)) throw Hdf5Error(name + ": not there");
-    now_ = &found->second, at_ = 0;
-    return now_->bytes.size() / type.size;
-  }
-  void next(void* data, uint64_t count) override {
-    const uint64_t size = count * now_->type.size;
-    if (count > now_->bytes.size() || size > now_->bytes.size() - at_) throw Hdf5Error("too short");
-    if (size > 0) std::memcpy(data, now_->bytes.data() + at_, size);
-    at_ += size;
-  }
-  void end() override {
-    if (at_ < now_->bytes.size()) throw Hdf5Error("too long");
-  }
-
- private:
-  const Arrays& arrays_;
-  const Stored* now_ = nullptr;
-  size_t at_ = 0;
-};
-
-// Passes a file's arrays on, and keeps them.
-class Recorder final : public ArraySource {
- public:
-  explicit Recorder(const std::filesystem::path& path) : file_(path), memory_(arrays) {}
-  uint64_t begin(const std::string& name, const ElementType& type) override {
-    const uint64_t count = file_.begin(name, type);
-    Stored& a = arrays[name];
-    a.type = type;
-    a.bytes.resize(count * type.size);
-    file_.next(a.bytes.data(), count);
-    return memory_.begin(name, type);
-  }
-  void next(void* data, uint64_t count) override { memory_.next(data, count); }
-  void end() override { memory_.end(); }
-  Arrays arrays;
-
- private:
-  Hdf5Reader file_;
-  Memory memory_;
-};
+using Arrays = StoredArrays;
 
 struct World {
   SmallRun run;
@@ -84,7 +31,7 @@ struct World {
     options.out = run.folder.path();
     const size_t count = run.checkpoints.size(), kept = 12;
     for (size_t k = 0; k < kept; ++k) {
-      Recorder source(run.checkpoints[k * (count - 1) / (kept - 1)]);
+      RecordingSource source(run.checkpoints[k * (count - 1) / (kept - 1)]);
       StateReader in(source);
       Simulation(run.c, options, log).load(in);
       states.push_back(std::move(source.arrays));
@@ -123,7 +70,7 @@ void edit(Arrays& arrays, Input& in) {
 // Goes through all that reads the lists: steps, the histories' way across a rebuild, sums.
 void go_on(const Case& c, const EngineOptions& options, const Arrays& arrays) {
   const auto engine = make_engine(c, options);
-  Memory source(arrays);
+  MemorySource source(arrays);
   StateReader in(source);
   engine->load(in);
   try {
@@ -146,7 +93,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   fuzz::Arrays arrays = world.states[input.byte() % world.states.size()];
   for (size_t k = 0; k < fuzz::kMostEdits && !input.empty(); ++k) fuzz::edit(arrays, input);
   try {
-    fuzz::Memory source(arrays);
+    MemorySource source(arrays);
     StateReader in(source);
     Simulation(world.run.c, world.options, world.log).load(in);
     fuzz::go_on(world.run.c, world.options.engine, arrays);
