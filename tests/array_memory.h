@@ -16,10 +16,6 @@ struct StoredArray {
   std::vector<char> bytes;
 
   uint64_t count() const { return bytes.size() / type.size; }
-  template <class T>
-  T* as() {
-    return reinterpret_cast<T*>(bytes.data());
-  }
 };
 using StoredArrays = std::map<std::string, StoredArray>;
 
