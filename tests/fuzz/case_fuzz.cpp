@@ -1,9 +1,11 @@
 // Any bytes are a case or a CaseError; nothing else may happen. A case that was read can be described, its solid
 // searched, and what was understood of it reads back as the same case.
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 
 #include "geometry/solid_index.h"
+#include "runtime/case_difference.h"
 #include "runtime/case_reader.h"
 #include "runtime/memory.h"
 #include "runtime/simulation.h"
@@ -34,6 +36,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     return 0;
   }
   use(c);
-  if (scree::read_case_text(c.understood, kPath).understood != c.understood) std::abort();  // a CaseError ends it, too
+  const scree::Case again = scree::read_case_text(c.understood, kPath);  // a CaseError ends it, too
+  if (const auto difference = scree::case_difference(c.understood, again.understood)) {
+    std::fprintf(stderr, "read back, it is another case: %s\n", difference->c_str());
+    std::abort();
+  }
   return 0;
 }

@@ -47,6 +47,11 @@ name = "low"
 shape = "box"
 min = [-4e-3, -4e-3, 0.2e-3]
 max = [4e-3, 4e-3, 5e-3]
+[[region]]
+name = "high"
+shape = "box"
+min = [-9e-3, -9e-3, 20e-3]
+max = [9e-3, 9e-3, 39e-3]
 [[outlet]]
 name = "exit"
 point = [0, 0, 0]
@@ -63,7 +68,7 @@ solid_fraction = 0.3
 velocity = [0, 0, -0.3]
 [[stage]]
 kind = "pour"
-region = "inside"
+region = "high"
 rate = 1
 mass = 3e-5
 velocity = [0, 0, -0.4]
