@@ -8,6 +8,7 @@
 
 #include "kernels/contacts.h"
 #include "kernels/particle.h"
+#include "runtime/checkpoint.h"
 #include "runtime/run_state.h"
 #include "runtime/state_archive.h"
 #include "tests/array_memory.h"
@@ -137,6 +138,24 @@ TEST(StateCheck, WhatIsNoStateIsRefusedWithAReason) {
     StoredArrays arrays = good[e.with_lists];
     e.edit(arrays);
     EXPECT_NE(refusal(arrays).find(e.reason), std::string::npos) << refusal(arrays);
+  }
+}
+
+// ---- whose it is
+
+TEST(StateCheck, ACheckpointWhoseCaseIsNoCaseIsRefused) {
+  Case c;
+  c.understood = "title = \"one\"\n";
+  EXPECT_NO_THROW(check_head(head_of(c), c));
+  CheckpointHead head = head_of(c);
+  for (const auto& [text, reason] : {std::pair("title = \"two\"\n", "another case"), {"ti+tle", "cannot be read"}}) {
+    head.case_text = text;
+    try {
+      check_head(head, c);
+      ADD_FAILURE() << text;
+    } catch (const CheckpointRefused& e) {
+      EXPECT_NE(std::string(e.what()).find(reason), std::string::npos) << e.what();
+    }
   }
 }
 
