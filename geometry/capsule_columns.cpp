@@ -4,13 +4,15 @@
 #include <limits>
 
 #include "geometry/closest_point.h"
+#include "geometry/fuzzing.h"
 
 namespace scree {
 
 namespace {
 
-constexpr double kBins = 10000;    // about so many, about square, across the box
-constexpr int kColumns = 1 << 18;  // error about 1/kColumns times the roughness of the projection; see porosity.h
+constexpr double kBins = kFuzzing ? 16 : 10000;  // about so many, about square, across the box
+constexpr int kColumns =
+    kFuzzing ? 1 << 4 : 1 << 18;  // error about 1/kColumns times the roughness of the projection; see porosity.h
 
 // Coordinates turned cyclically, so that the box stays right-handed, until its longest edge is z.
 Vec3 turned(const Vec3& v, int longest) {

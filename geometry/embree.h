@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace scree {
@@ -30,6 +31,7 @@ using GeometryHandle = EmbreeHandle<RTCGeometry, rtcReleaseGeometry>;
 
 inline void require_no_error(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (error != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree failed with error {}", int(error)));
 }
 

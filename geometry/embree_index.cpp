@@ -42,6 +42,7 @@ struct Query {
   Vec3 x;
   double reach;
   std::vector<uint32_t>& found;
+  bool out_of_memory = false;
 
   void consider(uint32_t primitive) {
     if (distance(primitives[primitive], x) <= reach) found.push_back(primitive);
@@ -59,7 +60,7 @@ class EmbreeIndex final : public SolidIndex {
 
   void query(const Vec3& x, double reach, std::vector<uint32_t>& found) const override {
     const auto first = std::ptrdiff_t(found.size());
-    Query query{primitives_, x, reach, found};
+    Query query{primitives_, x, reach, found, false};
     const Vec3 local = x - centre_;
     const double magnitude = std::max(largest_coordinate(local), std::abs(reach));
     if (magnitude < kLargestLength) {
@@ -105,6 +106,7 @@ class EmbreeIndex final : public SolidIndex {
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_.get(), &sphere, &context, nullptr, &query);
+    if (query.out_of_memory) throw std::bad_alloc();
   }
 
   static void bounds_callback(const RTCBoundsFunctionArguments* arguments) {
@@ -112,9 +114,15 @@ class EmbreeIndex final : public SolidIndex {
     *arguments->bounds_o = float_bounds(index->bounds_[arguments->primID]);
   }
 
-  // Returns whether the query's radius has changed: never, every primitive in reach is wanted.
+  // Returns whether the query's radius has changed: never, every primitive in reach is wanted. Embree swallows what is
+  // thrown here, and would answer with half of the primitives.
   static bool query_callback(RTCPointQueryFunctionArguments* arguments) {
-    static_cast<Query*>(arguments->userPtr)->consider(arguments->primID);
+    auto& query = *static_cast<Query*>(arguments->userPtr);
+    try {
+      query.consider(arguments->primID);
+    } catch (const std::bad_alloc&) {
+      query.out_of_memory = true;
+    }
     return false;
   }
 

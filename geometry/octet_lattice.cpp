@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/argument.h"
+#include "geometry/fuzzing.h"
 #include "geometry/walls.h"
 
 namespace scree {
@@ -10,7 +11,7 @@ namespace scree {
 namespace {
 
 // About 24 fibres a cell; more than this is a slip of the pen, and would not fit beside the particles.
-constexpr double kMostCells = 1e6;
+constexpr double kMostCells = kFuzzing ? 30 : 1e6;
 
 using HalfCells = std::array<int, 3>;  // a position counted in half cells
 

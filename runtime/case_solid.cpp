@@ -8,15 +8,13 @@
 #include "geometry/porosity.h"
 #include "geometry/walls.h"
 #include "runtime/case_sections.h"
-#include "runtime/csv_table.h"
+#include "runtime/csv_fibres.h"
 #include "runtime/memory.h"
 
 namespace scree {
 namespace {
 
-constexpr Range kFibreDiameter{1e-7, 10, "m", false};
-constexpr double kShortestFibre = 1e-9;  // m, of the axis: what is shorter has no direction
-constexpr double kFibresPerCell = 25;    // of an Octet lattice, about: a cell's own and its share of its neighbours'
+constexpr double kFibresPerCell = 25;  // of an Octet lattice, about: a cell's own and its share of its neighbours'
 
 // What a generator of geometry/ refuses becomes an error of the table that described it.
 template <class Make>
@@ -76,31 +74,6 @@ void read_lattice(TableReader t, Case& c) {
       generated(t, "fibre_diameter", [&] { return fibre_primitives(lattice, c.fibres.diameter, label); }));
 }
 
-struct Fibre {
-  Segment axis;
-  double diameter = 0;  // m; 0: the table's
-};
-
-std::vector<Fibre> read_fibre_file(const std::string& path) {
-  CsvTable table(path, {"x0", "y0", "z0", "x1", "y1", "z1", "diameter"});
-  const char* names[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
-  int column[6];
-  for (int i = 0; i < 6; ++i) column[i] = table.require(names[i]);
-  const int diameter = table.column("diameter");
-  std::vector<Fibre> fibres;
-  while (table.next()) {
-    double v[6];
-    for (int i = 0; i < 6; ++i) v[i] = table.number(column[i], kPosition);
-    Fibre& fibre = fibres.emplace_back(Fibre{{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}}, 0});
-    if (norm(fibre.axis.b - fibre.axis.a) < kShortestFibre)
-      table.fail(column[0], fmt::format("the fibre has no length, its ends must be {:g} m apart", kShortestFibre));
-    if (diameter < 0) continue;
-    fibre.diameter = table.number(diameter, kFibreDiameter);
-  }
-  if (fibres.empty()) throw CaseError({path, table.line(), 1}, "the file has no fibres below its header");
-  return fibres;
-}
-
 std::vector<Fibre> read_segments(TableReader& t) {
   std::vector<Fibre> fibres;
   for (const auto& v : t.rows("segments", kPosition, 6)) {
@@ -120,7 +93,7 @@ void read_fibres(TableReader& t, Case& c) {
   } else {
     const std::string file = path_beside(t, "file", t.text("file"));
     t.rewrite("file", file);
-    fibres = read_fibre_file(file);
+    fibres = read_fibres_csv(file);
   }
   const bool all_given = std::ranges::all_of(fibres, [](const Fibre& fibre) { return fibre.diameter > 0; });
   if (all_given && t.has("diameter"))

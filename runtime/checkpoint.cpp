@@ -1,11 +1,13 @@
 #include "runtime/checkpoint.h"
 
 #include <algorithm>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "runtime/case_difference.h"
+#include "runtime/case_error.h"
 #include "runtime/checksum.h"
 #include "runtime/run_folder.h"
 #include "runtime/seal.h"
@@ -38,6 +40,17 @@ std::vector<fs::path> files_named(const fs::path& folder, const std::string& beg
   return found;
 }
 
+// The texts may differ in comments and order; a text that is not even a case has another origin.
+void check_case_text(const std::string& before, const std::string& now) {
+  std::optional<std::string> difference;
+  try {
+    difference = case_difference(before, now);
+  } catch (const CaseError& e) {
+    throw CheckpointRefused(fmt::format("its case cannot be read: {}", e.what()));
+  }
+  if (difference) throw CheckpointRefused("it belongs to another case: " + *difference);
+}
+
 std::string step_name(uint64_t step) { return fmt::format("step_{:012}.h5", step); }
 
 }  // namespace
@@ -48,8 +61,7 @@ CheckpointHead head_of(const Case& c, const std::string& failure) {
 
 void check_head(const CheckpointHead& head, const Case& c) {
   if (!head.failure.empty()) throw CheckpointRefused("it holds the state that failed: " + head.failure);
-  if (const auto difference = case_difference(head.case_text, c.understood))
-    throw CheckpointRefused("it belongs to another case: " + *difference);
+  if (head.case_text != c.understood) check_case_text(head.case_text, c.understood);
   if (head.solid != checksum_of(c.solid))
     throw CheckpointRefused("its fibres or walls are others: a file that the case names, or the program, has changed");
 }
@@ -80,6 +92,8 @@ Checkpoints::Written Checkpoints::put(const std::string& name, const Save& save)
     fail(e.code().message());
   } catch (const RunError& e) {
     fail(e.what());
+  } catch (const std::bad_alloc&) {
+    fail("no memory is left for writing it");
   }
   return written;
 }
@@ -113,6 +127,8 @@ void Checkpoints::read(const fs::path& path, const Load& load) {
     throw CheckpointRefused(e.what());
   } catch (const Hdf5Error& e) {
     throw CheckpointRefused(e.what());
+  } catch (const StateRefused& e) {
+    throw CheckpointRefused(fmt::format("its values are no state of this case: {}", e.what()));
   } catch (const std::system_error& e) {
     throw CheckpointRefused("cannot be read: " + e.code().message());
   }

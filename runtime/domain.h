@@ -88,6 +88,12 @@ class Domain final : public Engine {
   std::string wall_named(uint32_t identity) const;
   std::string wall_of_image(uint32_t primitive) const;
 
+  // runtime/domain_check.cpp: throw StateRefused
+  void require_sound_numbers() const;
+  void require_sound_particles() const;
+  void require_sound_history() const;
+  void require_sound_lists() const;
+
   // The state beside the particles themselves. What is not here follows from the case, or is worked out anew by each
   // rebuild; histories only wait in history_ while the lists are not valid.
   template <class Visit>

@@ -15,18 +15,25 @@ void Domain<Real>::save(StateWriter& out) const {
 template <class Real>
 void Domain<Real>::load(StateReader& in) {
   for_each_field([&](const char* name, auto member) { in.load(std::string("engine/") + name, this->*member); });
+  require_sound_numbers();
   const uint32_t count = std::exchange(count_, 0);
+  require_state(in.size<Particle<Real>>("engine/particles") == count, "the number of its particles is another");
   reserve(count);
   count_ = count;
   in.array("engine/particles", std::span(now_.data(), count_));
+  require_sound_particles();
   place_dummies(now_), place_dummies(next_);
 
   Solid left{solid_.walls, {}};
-  for (const uint32_t k : solid_identity_) left.primitives.push_back(solid_.primitives.at(k));
+  for (const uint32_t k : solid_identity_) left.primitives.push_back(solid_.primitives[k]);
   solid_ = std::move(left);
-  if (!lists_valid_) return in.load("engine/history", history_);
+  if (!lists_valid_) {
+    in.load("engine/history", history_);
+    return require_sound_history();
+  }
   outcomes_.resize(chunks());
   index_solid();  // the slots name rows of its tables
+  require_sound_lists();
 }
 
 template class Domain<float>;

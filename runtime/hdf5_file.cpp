@@ -176,6 +176,8 @@ uint64_t Hdf5Reader::begin(const std::string& name, const ElementType& type) {
   const Handle stored(H5Dget_type(a.set), H5Tclose, name);
   if (H5Tequal(stored, a.type_id) <= 0) throw Hdf5Error(name + ": the elements are of another type");
   a.count = static_cast<uint64_t>(checked(H5Sget_simple_extent_npoints(a.space), name));
+  if (a.count > H5Dget_storage_size(a.set) / type.size)
+    throw Hdf5Error(name + ": longer than what the file holds of it");
   s.array = std::move(a);
   s.buffer.clear(), s.used = 0;
   return s.array.count;

@@ -58,17 +58,26 @@ class Hdf5Writer {
   std::unique_ptr<State> state_;
 };
 
-class Hdf5Reader {
+// Where named arrays come from. Throws Hdf5Error if there is none of that name and type, or too few elements.
+class ArraySource {
+ public:
+  virtual ~ArraySource() = default;
+  virtual bool has(const std::string& name) = 0;  // a group or an array
+  // begin() returns how many elements there are; next() gives the next `count` of them; end() checks that none is left.
+  virtual uint64_t begin(const std::string& name, const ElementType& type) = 0;
+  virtual void next(void* data, uint64_t count) = 0;
+  virtual void end() = 0;
+};
+
+class Hdf5Reader final : public ArraySource {
  public:
   explicit Hdf5Reader(const std::filesystem::path& path);
-  ~Hdf5Reader();
+  ~Hdf5Reader() override;
 
-  bool has(const std::string& name);  // a group or an array
-
-  // begin() returns how many elements there are; next() gives the next `count` of them; end() checks that none is left.
-  uint64_t begin(const std::string& name, const ElementType& type);
-  void next(void* data, uint64_t count);
-  void end();
+  bool has(const std::string& name) override;
+  uint64_t begin(const std::string& name, const ElementType& type) override;
+  void next(void* data, uint64_t count) override;
+  void end() override;
 
  private:
   struct State;

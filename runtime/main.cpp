@@ -253,6 +253,9 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& e) {
     fmt::print(stderr, "scree: {}\n", e.what());
     return kBadInput;
+  } catch (const std::bad_alloc&) {
+    std::fputs("scree: out of memory\n", stderr);  // with nothing allocated for saying so
+    return kFailed;
   } catch (const std::exception& e) {
     fmt::print(stderr, "scree: {}\n", e.what());
     return kFailed;

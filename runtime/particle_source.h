@@ -15,6 +15,9 @@ class ParticleSource {
   // kind furthest behind its share comes next.
   ParticleState draw();
 
+  // Whether what was loaded fits the mixture.
+  bool is_sound() const { return drawn_mass_.size() == mixture_.kinds.size(); }
+
   // What drawing changes.
   template <class Visit>
   static void for_each_field(const Visit& visit) {

@@ -263,6 +263,14 @@ Pour::Pour(const Case& c, const PourStage& stage, const Solid& solid, uint64_t s
   batch_interval_ = batch_mass / stage.rate;
 }
 
+bool Pour::is_sound() const {
+  const auto drawable = [&](const ParticleState& p) {
+    return std::ranges::count(stage_.mixture.kinds, p.kind) > 0 && std::isfinite(p.radius) && p.radius > 0 &&
+           std::isfinite(p.mass) && p.mass > 0;
+  };
+  return std::isfinite(mass_) && mass_ >= 0 && source_.is_sound() && std::ranges::all_of(waiting_, drawable);
+}
+
 std::vector<ParticleState> Pour::batch(double elapsed, std::span<const ParticleState> present) {
   const double target = stage_.rate * (elapsed + batch_interval_);
   double largest = 0, coming = mass_;

@@ -53,6 +53,9 @@ class Pour {
   bool done() const { return stage_.mass > 0 ? mass_ >= stage_.mass : count_ >= stage_.count; }
   double mass() const { return mass_; }
 
+  // Whether what was loaded can be where such a pour is.
+  bool is_sound() const;
+
   // Particles for `elapsed` seconds since the pour began, clear of those present.
   std::vector<ParticleState> batch(double elapsed, std::span<const ParticleState> present);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/case.h"
 #include "runtime/mass_flow.h"
 
 namespace scree {
@@ -58,5 +59,8 @@ struct RunState {
     visit("wall_seconds", &RunState::wall_seconds);
   }
 };
+
+// Throws StateRefused (runtime/state_archive.h) if what a checkpoint brought is not where a run of this case can be.
+void require_sound(const RunState& state, const Case& c);
 
 }  // namespace scree

@@ -22,6 +22,9 @@ namespace {
 
 constexpr double kFailureReach = 10;  // radii of the largest particle: what failure.vtp shows round a failure
 
+constexpr const char* kOutOfMemory =
+    "out of memory: run fewer particles, or on a machine with more; `scree check` prints what a case needs";
+
 const char* text(RunStatus s) {
   return s == RunStatus::done ? "done" : s == RunStatus::interrupted ? "interrupted" : "failed";
 }
@@ -182,11 +185,11 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     fail(e.what());
     failed_at = e.where;
   } catch (const std::bad_alloc&) {
-    fail("out of memory: run fewer particles, or on a machine with more; `scree check` prints what a case needs");
+    fail(kOutOfMemory);
   }
-  if (!simulation) return result;
   if (const auto good = Checkpoints(options.out, c.checkpoint.keep).newest_first(); !good.empty())
     result.checkpoint = good.front().string();
+  if (!simulation) return result;
   try {
     result.steady = simulation->steady();
     simulation->finish_observers();
@@ -203,6 +206,8 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     log->info("{}", text(result.status));
   } catch (const RunError& e) {
     fail(result.message.empty() ? e.what() : result.message + "; and " + e.what());
+  } catch (const std::bad_alloc&) {
+    fail(result.message.empty() ? kOutOfMemory : result.message + "; and no memory is left for the results");
   }
   return result;
 }

@@ -86,22 +86,27 @@ class Simulation {
   }
   // Throws CheckpointRefused; the simulation is of no use then.
   void load(const std::filesystem::path& checkpoint) {
-    Checkpoints::read(checkpoint, [&](StateReader& in) {
-      CheckpointHead head;
-      in.load("head", head);
-      check_head(head, case_);
-      in.load("run", state_);
-      engine_->load(in);
-      for (size_t k = 0; k < state_.stage; ++k)
-        if (const auto* open = std::get_if<OpenStage>(&case_.stages[k].action)) take_out(walls_of(*open));
-      const auto* pour = state_.begun ? std::get_if<PourStage>(&case_.stages[state_.stage].action) : nullptr;
-      if (pour) in.load("pour", make_pour(*pour));
-      for (const auto& o : observers_)  // one that the case has only now begins now
-        if (const std::string at = "observers/" + o->name(); in.has(at)) o->load(in, at);
-    });
+    Checkpoints::read(checkpoint, [&](StateReader& in) { load(in); });
+    resumed_from_ = checkpoint.filename().string();
+  }
+  // Throws CheckpointRefused, StateRefused or Hdf5Error.
+  void load(StateReader& in) {
+    CheckpointHead head;
+    in.load("head", head);
+    check_head(head, case_);
+    in.load("run", state_);
+    require_sound(state_, case_);
+    engine_->load(in);
+    for (size_t k = 0; k < state_.stage; ++k)
+      if (const auto* open = std::get_if<OpenStage>(&case_.stages[k].action)) take_out(walls_of(*open));
+    if (const auto* pour = state_.begun ? std::get_if<PourStage>(&case_.stages[state_.stage].action) : nullptr) {
+      in.load("pour", make_pour(*pour));
+      require_state(pour_->is_sound(), "its pour is at an impossible place");
+    }
+    for (const auto& o : observers_)  // one that the case has only now begins now
+      if (const std::string at = "observers/" + o->name(); in.has(at)) o->load(in, at);
     plan_looks();
     wall_before_ = state_.wall_seconds;
-    resumed_from_ = checkpoint.filename().string();
   }
 
   // Whatever the end: what the observers have becomes complete.
@@ -228,7 +233,7 @@ class Simulation {
   void run_stage(const std::string& name, const PourStage& s) {
     if (begin(name, "pour")) make_pour(s), state_.pouring = {};
     Pour& pour = *pour_;
-    auto& [next, last_placed] = state_.pouring;
+    double &next = state_.pouring.next, &last_placed = state_.pouring.last_placed;
     const auto due = [&] {
       if (stage_time() < next) return pour.done();
       const std::vector<ParticleState> placed = pour.batch(stage_time(), engine_->particles());
@@ -268,18 +273,18 @@ class Simulation {
   }
 
   void run_stage(const std::string& name, const DrainStage& s) {
-    auto& [present, before, last_mass, last_change] = state_.draining;
+    RunState::Draining& d = state_.draining;
     if (begin(name, "drain")) {
-      present = engine_->sum([](const ParticleState& p) { return p.mass; });
-      before = last_mass = discharged(), last_change = 0;
+      d.present = engine_->sum([](const ParticleState& p) { return p.mass; });
+      d.before = d.last_mass = discharged(), d.last_change = 0;
     }
-    const auto drained = [&] { return present > 0 ? (discharged() - before) / present : 1.0; };
+    const auto drained = [&] { return d.present > 0 ? (discharged() - d.before) / d.present : 1.0; };
     const auto over = [&] {
       if (s.max_time > 0 && stage_time() >= s.max_time * (1 - 1e-9)) return true;
       if (engine_->count() == 0) return true;
       if (s.discharged_fraction > 0 && drained() >= s.discharged_fraction) return true;
-      if (const double now = discharged(); now > last_mass) last_mass = now, last_change = stage_time();
-      return s.no_flow_time > 0 && last_mass > before && stage_time() - last_change >= s.no_flow_time;
+      if (const double now = discharged(); now > d.last_mass) d.last_mass = now, d.last_change = stage_time();
+      return s.no_flow_time > 0 && d.last_mass > d.before && stage_time() - d.last_change >= s.no_flow_time;
     };
     advance_until(over, [&] {
       const double by_time = s.max_time > 0 ? stage_time() / s.max_time : 0;

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -76,13 +77,24 @@ class StateWriter {
   Hdf5Writer& file_;
 };
 
-// The same names and types back. Throws Hdf5Error.
+// Values of the right names and types that are no state of this case: an index beyond its list, a NaN.
+struct StateRefused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+inline void require_state(bool good, const char* what) {
+  if (!good) throw StateRefused(what);
+}
+
+// The same names and types back. Throws Hdf5Error. What the values mean is for their owner to check: StateRefused.
 class StateReader {
  public:
-  explicit StateReader(Hdf5Reader& file) : file_(file) {}
+  explicit StateReader(ArraySource& file) : file_(file) {}
 
   bool has(const std::string& name) { return file_.has(name); }
-
+  template <class T>
+  uint64_t size(const std::string& name) {
+    return file_.begin(name, element_type<T>());
+  }
   // Reads an array of which the caller knows the size.
   template <class T>
   void array(const std::string& name, std::span<T> values) {
@@ -93,6 +105,12 @@ class StateReader {
   template <PlainValue T>
   void load(const std::string& name, T& value) {
     array(name, std::span(&value, 1));
+  }
+  void load(const std::string& name, bool& value) {  // a bool that is neither 0 nor 1 must never come to be
+    uint8_t byte = 0;
+    load(name, byte);
+    if (byte > 1) throw Hdf5Error(name + ": neither true nor false");
+    value = byte != 0;
   }
   void load(const std::string& name, std::string& value) { list(name, value); }
   template <PlainValue T>
@@ -117,6 +135,7 @@ class StateReader {
   }
   template <class T, PlainValue M>
   void column(const std::string& name, std::vector<T>& owners, M T::*member) {
+    static_assert(!std::is_same_v<M, bool>);
     owners.resize(file_.begin(name, element_type<M>()));
     for (T& owner : owners) file_.next(&(owner.*member), 1);
     file_.end();
@@ -127,15 +146,17 @@ class StateReader {
     std::vector<uint64_t> sizes;
     load(name + "_sizes", sizes);
     owners.resize(sizes.size());
-    file_.begin(name, element_type<typename M::value_type>());
+    uint64_t left = file_.begin(name, element_type<typename M::value_type>());
     for (size_t k = 0; k < owners.size(); ++k) {
+      if (sizes[k] > left) throw Hdf5Error(name + ": too short");
+      left -= sizes[k];
       (owners[k].*member).resize(sizes[k]);
       file_.next((owners[k].*member).data(), sizes[k]);
     }
     file_.end();
   }
 
-  Hdf5Reader& file_;
+  ArraySource& file_;
 };
 
 }  // namespace scree

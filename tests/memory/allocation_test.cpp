@@ -1,0 +1,177 @@
+// Memory that runs out at any allocation of a run: the run fails with a message, nothing is corrupted, nothing calls
+// std::terminate, and what was written before is good to go on from. This program's own `operator new` fails when told.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "geometry/solid_index.h"
+#include "kernels/parallel.h"
+#include "tests/cases/every_stage.h"
+#include "tests/oracle/beds.h"
+
+namespace {
+
+std::atomic<int64_t> countdown{-1};  // allocations until one fails; negative: none does
+std::atomic<int64_t> allocations{0};
+
+void* allocate(size_t size, size_t alignment) {
+  ++allocations;
+  if (countdown >= 0 && countdown-- == 0) throw std::bad_alloc();
+  void* memory = alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                               : std::malloc(size > 0 ? size : 1);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(size_t size) { return allocate(size, 0); }
+void* operator new(size_t size, std::align_val_t alignment) { return allocate(size, static_cast<size_t>(alignment)); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace scree {
+namespace {
+
+// Runs `body` once with each of its allocations failing in turn (each `stride`-th), then lets it pass. body() says
+// whether it noticed.
+template <class Body>
+int fail_each_allocation(int64_t stride, const Body& body) {
+  allocations = 0;
+  EXPECT_FALSE(body()) << "without a failure";
+  const int64_t all = allocations;
+  EXPECT_GT(all, 10);
+  int noticed = 0;
+  for (int64_t k = 0; k < all; k += stride) {
+    SCOPED_TRACE("allocation " + std::to_string(k));
+    countdown = k;
+    const bool seen = body();
+    countdown = -1;
+    noticed += seen;
+    if (::testing::Test::HasFailure()) return noticed;
+  }
+  return noticed;
+}
+
+TEST(Memory, ThatRunsOutInAParallelLoopReachesTheCaller) {
+  for (const int threads : {1, 3}) {
+    set_thread_count(threads);
+    std::vector<std::vector<int>> lists(64);
+    const auto fill = [&] {
+      for (auto& list : lists) list = {};
+      try {
+        parallel_for(lists.size(), [&](size_t k) { lists[k].resize(100); });
+      } catch (const std::bad_alloc&) {
+        return true;
+      }
+      return false;
+    };
+    EXPECT_EQ(fail_each_allocation(1, fill), 64);
+  }
+}
+
+TEST(Memory, ThatRunsOutInASearchIsNotHalfAnAnswer) {
+  const Case c = [] {
+    Case made = ceramic_case({{-0.01, -0.01, -0.02}, {0.01, 0.01, 0.02}});
+    add_small_lattice(made);
+    return made;
+  }();
+  const auto index = make_embree_index(c.solid);
+  std::vector<uint32_t> all;
+  index->query({0, 0, -0.005}, 0.003, all);
+  ASSERT_GT(all.size(), 20u);
+  const auto ask = [&] {
+    std::vector<uint32_t> found;
+    try {
+      index->query({0, 0, -0.005}, 0.003, found);
+    } catch (const std::bad_alloc&) {
+      return true;
+    }
+    EXPECT_EQ(found, all);
+    return false;
+  };
+  allocations = 0;
+  ask();
+  for (int64_t k = 0, most = allocations; k < most; ++k) {
+    countdown = k;
+    EXPECT_TRUE(ask()) << k;
+    countdown = -1;
+  }
+}
+
+// Steps, rebuilds, the solid's search: an engine in which an allocation failed is given up, but not with a crash.
+TEST(Memory, ThatRunsOutInTheEngineIsAnException) {
+  set_thread_count(2);
+  const LooseBed bed{5, 5, 4};
+  const Case c = bed_case(bed);
+  const std::vector<ParticleState> particles = bed.particles({0, 0, 1e-5}, 1);
+  const auto run = [&] {
+    try {
+      const auto engine = make_engine(c);
+      engine->insert(particles);
+      for (int k = 0; k < 60; ++k) engine->step();
+      engine->particles();
+    } catch (const std::bad_alloc&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_GT(fail_each_allocation(1, run), 50);
+}
+
+// A whole run through every stage, its checkpoints and results.
+TEST(Memory, ThatRunsOutInARunLeavesAStateToGoOnFrom) {
+  set_thread_count(1);
+  const TemporaryFolder folder;
+  const Case c = read_case(write_every_stage(folder.path()),
+                           {"stage.1.count=20", "checkpoint.interval=1e-3", "checkpoint.keep=2"});
+  int number = 0;
+  std::string hash;
+  const auto run = [&](const std::filesystem::path& out, bool resume) {
+    RunOptions options;
+    options.out = out, options.threads = 1, options.resume = resume;
+    options.engine.brute_force_solid = true;
+    return run_case(c, options);
+  };
+  const auto run_and_resume = [&] {
+    const std::filesystem::path out = folder.path() / ("run_" + std::to_string(number++));
+    bool noticed = false;
+    try {
+      const RunResult result = run(out, false);
+      noticed = result.status == RunStatus::failed;
+      if (noticed) {
+        EXPECT_NE(result.message.find("memory"), std::string::npos) << result.message;
+      }
+    } catch (const std::bad_alloc&) {  // before the run began, or in saying what happened
+      noticed = true;
+    }
+    countdown = -1;
+    if (noticed && !Checkpoints(out, 2).newest_first().empty()) {
+      EXPECT_EQ(run(out, true).status, RunStatus::done);
+    }
+    if (!noticed || !Checkpoints(out, 2).newest_first().empty()) {
+      const std::string now = read_summary(out)["state_hash"];
+      if (hash.empty()) hash = now;
+      EXPECT_EQ(now, hash);
+    }
+    std::filesystem::remove_all(out);
+    return noticed;
+  };
+  allocations = 0;
+  EXPECT_FALSE(run_and_resume());
+  const int64_t all = allocations;
+  int noticed = 0, tried = 0;
+  for (int64_t k = 0; k < all && !HasFailure(); k += 1 + all / 60, ++tried) {
+    SCOPED_TRACE("allocation " + std::to_string(k) + " of " + std::to_string(all));
+    countdown = k;
+    noticed += run_and_resume();
+  }
+  EXPECT_GT(noticed, tried / 2);
+}
+
+}  // namespace
+}  // namespace scree
