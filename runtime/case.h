@@ -11,6 +11,7 @@
 
 #include "geometry/solid.h"
 #include "kernels/contact_law.h"
+#include "runtime/schedule.h"
 
 namespace scree {
 
@@ -130,11 +131,35 @@ struct Meter {
   Vec3 min{}, max{};
 };
 
+enum class During { always, drain, steady };  // a drain stage; output.steady_window of it
+
+// Fields on a grid, averaged over what is looked at: runtime/averages.h.
+struct AverageSettings {
+  std::string name;
+  Bounds box{};
+  double spacing = 0;  // m, edge of a cell, about: whole cells fill the box
+  double width = 0;    // m, half-width of the kernel
+  During during = During::drain;
+  Moments moments;
+};
+
+// Which parts of fibres and walls are touched: runtime/touch_maps.h.
+struct TouchSettings {
+  bool enabled = false;
+  double cell = 0;              // m, edge of a cell, about
+  uint64_t around = 12;         // cells round a fibre
+  std::vector<uint32_t> walls;  // index into Solid::walls: plane walls that have a map
+  During during = During::drain;
+  Moments moments;
+};
+
 struct OutputSettings {
   double interval = 1e-3;  // s between rows of mass_flow.csv and meters
   double steady_from = 0,
          steady_to = 0;  // s after the drain began: window of the steady flow; 0, 0: found automatically
   bool final_vtk = true;
+  std::vector<AverageSettings> averages;
+  TouchSettings touch;
 };
 
 struct CheckpointSettings {

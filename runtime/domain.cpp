@@ -244,16 +244,19 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
 }
 
 template <class Real>
-std::vector<ContactState> Domain<Real>::contacts() const {
+std::vector<ContactState> Domain<Real>::contacts(Contacts which) const {
   if (!lists_valid_) return {};
   std::vector<std::vector<ContactState>> found(contacts_.size());
   parallel_for(found.size(), [&](size_t c) {
-    visit_touching<Real>(chunk_task(c, nullptr), contacts_[c], [&](const TouchingContact& t) {
+    const auto add = [&](const TouchingContact& t) {
       const bool solid = t.skeleton >= 0;
       if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
       found[c].push_back(
           {t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force, t.slip});
-    });
+    };
+    const ChunkTask<Real> task = chunk_task(c, nullptr);
+    if (which == Contacts::all) visit_touching_pairs<Real>(task, contacts_[c], add);
+    visit_touching_solids<Real>(task, contacts_[c], add);
   });
   std::vector<ContactState> result;
   for (const auto& part : found) result.insert(result.end(), part.begin(), part.end());

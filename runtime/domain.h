@@ -47,7 +47,7 @@ class Domain final : public Engine {
   std::vector<ParticleState> particles() const override;
   uint64_t state_hash() const override;
   std::vector<TouchingPair> touching_pairs() const override;
-  std::vector<ContactState> contacts() const override;
+  std::vector<ContactState> contacts(Contacts which) const override;
 
  private:
   uint32_t chunks() const { return (count_ + chunk_size_ - 1) / chunk_size_; }

@@ -119,8 +119,10 @@ class Engine {
   virtual std::vector<TouchingPair> touching_pairs() const = 0;
 
   // Every contact that touches now, each once, with the force that the next step will apply; nothing between an
-  // insertion or opening of walls and the next step. The same list for any number of threads.
-  virtual std::vector<ContactState> contacts() const = 0;
+  // insertion or opening of walls and the next step. The same list for any number of threads. Those with solids alone
+  // cost a fraction of all.
+  enum class Contacts { all, with_solids };
+  virtual std::vector<ContactState> contacts(Contacts which = Contacts::all) const = 0;
 };
 
 std::unique_ptr<Engine> make_engine(const Case& c, const EngineOptions& options = {});

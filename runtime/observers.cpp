@@ -1,9 +1,14 @@
+#include "runtime/averages.h"
 #include "runtime/observer.h"
+#include "runtime/touch_maps.h"
 
 namespace scree {
 
-std::vector<std::unique_ptr<Observer>> make_observers(const Case&, const std::filesystem::path&, double) {
+std::vector<std::unique_ptr<Observer>> make_observers(const Case& c, const std::filesystem::path&, double dt) {
   std::vector<std::unique_ptr<Observer>> observers;
+  for (const AverageSettings& average : c.output.averages)
+    observers.push_back(std::make_unique<Averages>(c, average, dt));
+  if (c.output.touch.enabled) observers.push_back(std::make_unique<TouchMaps>(c, dt));
   return observers;
 }
 
