@@ -1,14 +1,7 @@
-// The only file that knows Embree (3 or 4). Primitives are registered as user geometry, because Embree 3.13's
-// rtcPointQuery never calls back for curves.
+// Primitives are registered as user geometry, because Embree 3.13's rtcPointQuery never calls back for curves.
 //
 // Embree works in float, the answer is in double. Embree only proposes: bounds and query sphere are widened by more
 // than float rounding can take away, so that it proposes too many, and the exact distance decides.
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +9,7 @@
 #include "geometry/argument.h"
 #include "geometry/bounds.h"
 #include "geometry/closest_point.h"
+#include "geometry/embree.h"
 #include "geometry/solid_index.h"
 
 namespace scree {
@@ -43,19 +37,6 @@ RTCBounds float_bounds(const Bounds& bounds) {
   return result;
 }
 
-// Owns a reference-counted Embree object.
-template <class Object, void (*release)(Object)>
-struct Release {
-  using pointer = Object;
-  void operator()(Object object) const { release(object); }
-};
-template <class Object, void (*release)(Object)>
-using Handle = std::unique_ptr<Object, Release<Object, release>>;
-
-using DeviceHandle = Handle<RTCDevice, rtcReleaseDevice>;
-using SceneHandle = Handle<RTCScene, rtcReleaseScene>;
-using GeometryHandle = Handle<RTCGeometry, rtcReleaseGeometry>;
-
 struct Query {
   const std::vector<PreparedPrimitive>& primitives;
   Vec3 x;
@@ -69,8 +50,7 @@ struct Query {
 
 class EmbreeIndex final : public SolidIndex {
  public:
-  explicit EmbreeIndex(const Solid& solid) : device_(rtcNewDevice("threads=1")) {
-    require_no_error();
+  explicit EmbreeIndex(const Solid& solid) : device_(embree_device()) {
     for (const Primitive& primitive : solid.primitives) add(primitive);
     centre_ = primitives_.empty() ? Vec3{0, 0, 0} : 0.5 * (bounds_of(solid).min + bounds_of(solid).max);
     for (Bounds& bounds : bounds_) bounds = {bounds.min - centre_, bounds.max - centre_};
@@ -104,7 +84,7 @@ class EmbreeIndex final : public SolidIndex {
   void build() {
     scene_.reset(rtcNewScene(device_.get()));
     const GeometryHandle geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
-    require_no_error();
+    require_no_error(device_.get());
     rtcSetGeometryUserPrimitiveCount(geometry.get(), unsigned(primitives_.size()));
     rtcSetGeometryUserData(geometry.get(), this);
     rtcSetGeometryBoundsFunction(geometry.get(), bounds_callback, this);
@@ -112,7 +92,7 @@ class EmbreeIndex final : public SolidIndex {
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(scene_.get(), geometry.get());
     rtcCommitScene(scene_.get());
-    require_no_error();
+    require_no_error(device_.get());
   }
 
   void ask_embree(const Vec3& local, double radius, Query& query) const {
@@ -125,11 +105,6 @@ class EmbreeIndex final : public SolidIndex {
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_.get(), &sphere, &context, nullptr, &query);
-  }
-
-  void require_no_error() const {
-    const RTCError error = rtcGetDeviceError(device_.get());
-    if (error != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree failed with error {}", int(error)));
   }
 
   static void bounds_callback(const RTCBoundsFunctionArguments* arguments) {

@@ -1,6 +1,7 @@
 // One step of one chunk, forces to new records, in one pass over memory.
 #pragma once
 
+#include <chrono>
 #include <cstring>
 
 #include "kernels/pair_pass.h"
@@ -72,15 +73,40 @@ inline void integrate(const ChunkTask<Real>& task, ChunkOutcome& outcome) {
   outcome.too_fast = bad;
 }
 
+// Times the parts of a chunk's step, one after the other.
+class PartClock {
+ public:
+  PartClock(bool on, ChunkOutcome& outcome) : on_(on), outcome_(outcome) {
+    if (on_) last_ = Clock::now();
+  }
+  void ends(StepPart part) {
+    if (!on_) return;
+    const Clock::time_point now = Clock::now();
+    outcome_.seconds[static_cast<int>(part)] = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool on_;
+  ChunkOutcome& outcome_;
+  Clock::time_point last_;
+};
+
 template <class L, class Traits>
 ChunkOutcome step_chunk(const ChunkTask<typename L::Real>& task) {
   using Real = typename L::Real;
   ChunkOutcome outcome;
-  std::memset(task.rows, 0, (task.end - task.begin + 1) * size_t{8} * sizeof(Real));
+  PartClock clock(task.settings->profile, outcome);
   if (task.settings->check_near) promote_near_pairs<L>(task);
+  clock.ends(StepPart::near_check);
+  std::memset(task.rows, 0, (task.end - task.begin + 1) * size_t{8} * sizeof(Real));
   outcome.max_pair_overlap = pair_pass<L, Traits>(task);
+  clock.ends(StepPart::pairs);
   outcome.max_solid_overlap = solid_pass<L, Traits>(task);
+  clock.ends(StepPart::solids);
   integrate<Real>(task, outcome);
+  clock.ends(StepPart::integration);
   return outcome;
 }
 

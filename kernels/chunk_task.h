@@ -37,16 +37,22 @@ struct StepSettings {
   double gravity[3];                    // m/s2
   double period[3], inverse_period[3];  // m, 1/m; 0: not periodic
   bool limit_attraction;
-  bool check_near;     // promote near pairs before the forces
-  double inner;        // m: a near pair closer than this becomes active
-  double speed_limit;  // m/s: a particle faster than this (or NaN) fails the step
+  bool check_near;       // promote near pairs before the forces
+  double inner;          // m: a near pair closer than this becomes active
+  double speed_limit;    // m/s: a particle faster than this (or NaN) fails the step
+  bool profile = false;  // ChunkOutcome::seconds is wanted
 };
 
+// The parts of a chunk's step that a profile tells apart.
+enum class StepPart { near_check, pairs, solids, integration };
+inline constexpr int kStepParts = 4;
+
 struct ChunkOutcome {
-  double max_speed = 0;          // m/s, of the velocities that moved the particles
-  double max_pair_overlap = 0;   // share of the sum of the radii
-  double max_solid_overlap = 0;  // share of R_i
-  bool too_fast = false;         // a speed above the limit, or NaN
+  double max_speed = 0;             // m/s, of the velocities that moved the particles
+  double max_pair_overlap = 0;      // share of the sum of the radii
+  double max_solid_overlap = 0;     // share of R_i
+  bool too_fast = false;            // a speed above the limit, or NaN
+  double seconds[kStepParts] = {};  // by StepPart, of the thread that did it; only in a profile
 };
 
 template <class Real>

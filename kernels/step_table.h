@@ -25,6 +25,7 @@ StepKernels<typename L::Real> kernels_for(const KernelChoice& choice) {
 }
 
 StepKernels<float> native_kernels(const KernelChoice& choice);
+StepKernels<float> avx512_kernels(const KernelChoice& choice);  // only on machines that have it
 StepKernels<float> scalar_kernels(const KernelChoice& choice);
 StepKernels<double> reference_kernels(const KernelChoice& choice);
 

@@ -39,7 +39,7 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
   for (int a = 0; a < 3; ++a)
     settings_.gravity[a] = gravity[a], settings_.period[a] = periodic_[a] ? lengths[a] : 0,
     settings_.inverse_period[a] = periodic_[a] ? 1 / lengths[a] : 0;
-  settings_.limit_attraction = c.contact.limit_attraction;
+  settings_.limit_attraction = c.contact.limit_attraction, settings_.profile = options.profile;
   materials_ = material_table<Real>(c);
   isa_ = std::is_same_v<Real, double> ? "reference" : options.isa.empty() ? available_isas().front() : options.isa;
   kernels_ = select_kernels<Real>(isa_, {c.contact.rolling, materials_.uniform_pairs && materials_.uniform_walls});
@@ -138,7 +138,9 @@ void Domain<Real>::step() {
     all.max_pair_overlap = std::max(all.max_pair_overlap, o.max_pair_overlap);
     all.max_solid_overlap = std::max(all.max_solid_overlap, o.max_solid_overlap);
     all.too_fast |= o.too_fast;
+    for (int part = 0; part < kStepParts; ++part) all.seconds[part] += o.seconds[part];
   }
+  add_profile(all);
   max_speed_ = all.max_speed;
   max_overlap_ = std::max(2 * all.max_pair_overlap, all.max_solid_overlap);
   const double way = kWayMargin * max_speed_ * settings_.dt;
@@ -149,6 +151,13 @@ void Domain<Real>::step() {
   if (all.too_fast || all.max_pair_overlap > kMaxOverlapShare || all.max_solid_overlap > kMaxOverlapShare)
     fail_step(all);
   if (check_interval_ > 0 && counters_.steps % check_interval_ == 0) check_lists();
+}
+
+template <class Real>
+void Domain<Real>::add_profile(const ChunkOutcome& all) {
+  const auto of = [&](StepPart part) { return all.seconds[static_cast<int>(part)]; };
+  counters_.near_check_seconds += of(StepPart::near_check), counters_.pair_seconds += of(StepPart::pairs);
+  counters_.solid_seconds += of(StepPart::solids), counters_.integration_seconds += of(StepPart::integration);
 }
 
 // What one chunk's pass reads; the lists and the records that a step writes are not in it.

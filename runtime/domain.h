@@ -73,6 +73,7 @@ class Domain final : public Engine {
 
   ChunkTask<Real> chunk_task(size_t c, Real* rows) const;
   void advance_chunks();
+  void add_profile(const ChunkOutcome& all);
 
   // runtime/domain_watch.cpp
   [[noreturn]] void fail_step(const ChunkOutcome& outcome) const;

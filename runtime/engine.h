@@ -53,6 +53,8 @@ struct EngineCounters {
   uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, inserted = 0, removed = 0;
   std::vector<double> removed_mass;  // kg, by what the removal rule said
   double step_seconds = 0, history_seconds = 0, sort_seconds = 0, pair_search_seconds = 0, solid_search_seconds = 0;
+  // Of all threads together, only when EngineOptions::profile is set.
+  double near_check_seconds = 0, pair_seconds = 0, solid_seconds = 0, integration_seconds = 0;
 
   template <class Visit>
   static void for_each_field(const Visit& visit) {
@@ -64,6 +66,9 @@ struct EngineCounters {
     visit("sort_seconds", &EngineCounters::sort_seconds);
     visit("pair_search_seconds", &EngineCounters::pair_search_seconds);
     visit("solid_search_seconds", &EngineCounters::solid_search_seconds);
+    visit("near_check_seconds", &EngineCounters::near_check_seconds);
+    visit("pair_seconds", &EngineCounters::pair_seconds), visit("solid_seconds", &EngineCounters::solid_seconds);
+    visit("integration_seconds", &EngineCounters::integration_seconds);
   }
 };
 
@@ -71,6 +76,7 @@ struct EngineOptions {
   std::string isa;                       // empty: the best available
   bool brute_force_solid = false;        // the oracle's twin of the Embree index
   double skin = 0;                       // m; 0: from speeds and sizes
+  bool profile = false;                  // time the parts of the step
   uint64_t list_check_interval = 20000;  // steps between proofs that no contact is missing from the lists; 0: none
 };
 

@@ -13,6 +13,7 @@
 #include "kernels/step_kernels.h"
 #include "runtime/case_error.h"
 #include "runtime/case_reader.h"
+#include "runtime/render/options.h"
 #include "runtime/run_folder.h"
 #include "runtime/simulation.h"
 #include "runtime/time_scales.h"
@@ -32,6 +33,7 @@ struct Arguments {
   double checkpoint_every = 0;  // s; 0: not given
   bool resume = false;
   bool force_memory = false;
+  bool profile = false;
 };
 
 // results/<case>, or the next of results/<case>-2, -3, ... that is free: nothing is overwritten.
@@ -59,6 +61,7 @@ int run(const Arguments& a) {
   options.threads = a.threads;
   options.engine.isa = a.isa;
   options.engine.list_check_interval = a.check_lists;
+  options.engine.profile = a.profile;
   options.ignore_memory = a.force_memory;
   options.show_progress = isatty(STDERR_FILENO);
   options.stop = &stop_requested;
@@ -69,6 +72,7 @@ int run(const Arguments& a) {
   for (const std::string& warning : scree::time_step_warnings(c)) fmt::print(stderr, "scree: warning: {}\n", warning);
 
   const scree::RunResult result = scree::run_case(c, options);
+  fmt::print("{}", result.profile);
   if (result.steady)
     fmt::print("steady mass flow rate {:.3f} +- {:.3f} g/s, from {:.3f} s to {:.3f} s\n", 1e3 * result.steady->rate,
                1e3 * result.steady->standard_error, result.steady->from, result.steady->to);
@@ -105,6 +109,13 @@ int check(const Arguments& a) {
   return kDone;
 }
 
+int render(const Arguments& a, const scree::RenderArguments& pictures) {
+  if (a.threads > 0) scree::set_thread_count(a.threads);
+  std::signal(SIGXFSZ, SIG_IGN);
+  scree::render_folder(pictures, [](const std::string& text) { fmt::print("{}\n", text); });
+  return kDone;
+}
+
 void add_threads_option(CLI::App& command, Arguments& a) {
   command.add_option("--threads", a.threads, "threads (default: all processors); the results do not depend on it")
       ->check(CLI::Range(1, 4096));
@@ -126,6 +137,7 @@ void add_run_options(CLI::App& command, Arguments& a) {
       .add_option("--checkpoint-every", a.checkpoint_every,
                   "wall-clock seconds between checkpoints (default: the case's checkpoint.interval, 600)")
       ->check(CLI::PositiveNumber);
+  command.add_flag("--profile", a.profile, "print at the end where the time went, part by part of the step");
 }
 
 }  // namespace
@@ -160,6 +172,9 @@ int main(int argc, char** argv) {
   run_command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   CLI::App& check_command = *app.add_subcommand("check", "validate a case and print what would run");
   add_case_options(check_command, a);
+  scree::RenderArguments pictures;
+  CLI::App& render_command = scree::add_render_command(app, pictures);
+  add_threads_option(render_command, a);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -167,6 +182,7 @@ int main(int argc, char** argv) {
     return code == 0 ? kDone : kBadInput;
   }
   try {
+    if (render_command.parsed()) return render(a, pictures);
     return run_command.parsed() ? run(a) : resume_command.parsed() ? resume(a) : check(a);
   } catch (const scree::CaseError& e) {
     fmt::print(stderr, "scree: {}\n", e.what());

@@ -10,6 +10,7 @@
 #include "runtime/case_size.h"
 #include "runtime/case_writer.h"
 #include "runtime/memory.h"
+#include "runtime/profile.h"
 #include "runtime/run_folder.h"
 #include "runtime/stages.h"
 #include "runtime/time_scales.h"
@@ -187,6 +188,11 @@ RunResult run_case(const Case& c, const RunOptions& options) {
   try {
     result.steady = simulation->steady();
     simulation->finish_observers();
+    if (options.engine.profile) {
+      const EngineCounters& k = simulation->engine().counters();
+      result.profile = profile_table(profile_of(k, thread_count(), simulation->wall_seconds()), k.particle_steps);
+      log->info("where the time went:\n{}", result.profile);
+    }
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
     if (failed_at)
       write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine().particles(), *failed_at,

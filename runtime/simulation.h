@@ -30,6 +30,7 @@ struct RunResult {
   std::string message;  // why it failed
   std::optional<SteadyFlow> steady;
   std::filesystem::path out;
+  std::string profile;     // a table, when EngineOptions::profile is set
   std::string checkpoint;  // the newest that the run can be gone on from; empty: none
 };
 

@@ -1,0 +1,29 @@
+// What particles can be coloured by, and which colours that gives.
+#pragma once
+
+#include <optional>
+
+#include "runtime/case.h"
+#include "runtime/render/colour_map.h"
+#include "runtime/render/particle_frame.h"
+
+namespace scree {
+
+// Every name that values_of() knows for this frame: speed, coordination, kind, age, force, ..., and components of
+// vectors as force_x.
+std::vector<std::string> quantities_of(const ParticleFrame& frame);
+
+// One value for each particle, SI. A vector's is its length. Throws CaseError for an unknown name, listing the known.
+std::vector<double> values_of(const ParticleFrame& frame, const std::string& quantity);
+
+struct ValueRange {
+  double min, max;
+};
+
+// The colours for these values: from zero to a round number that one value in a hundred exceeds, symmetric about zero
+// if some are negative, or the values' own range if they are all alike; `given` instead, if it is. Kinds have their
+// names from the case.
+ColourScale colour_scale(const Case& c, const std::string& quantity, std::vector<double> values,
+                         const std::optional<ValueRange>& given = {});
+
+}  // namespace scree

@@ -1,0 +1,113 @@
+#include "runtime/render/vtp_reader.h"
+
+#include <cstring>
+#include <fstream>
+#include <optional>
+
+#include "runtime/case_error.h"
+
+namespace scree {
+
+namespace {
+
+struct Array {
+  std::string name, type;
+  size_t components = 1, offset = 0;
+};
+
+class File {
+ public:
+  explicit File(const std::filesystem::path& path) : path_(path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) fail("cannot be read");
+    content_.assign(std::istreambuf_iterator<char>(file), {});
+    const std::string marker = "<AppendedData encoding=\"raw\">";
+    const size_t at = content_.find(marker);
+    const size_t start = at == std::string::npos ? at : content_.find('_', at + marker.size());
+    if (start == std::string::npos) fail("is not VTK PolyData with raw appended data");
+    head_ = std::string_view(content_).substr(0, at), data_ = std::string_view(content_).substr(start + 1);
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const { throw CaseError({path_.string()}, problem); }
+
+  std::vector<Array> arrays() const {
+    std::vector<Array> arrays;
+    for (size_t at = 0; (at = head_.find("<DataArray ", at)) != std::string_view::npos; ++at) {
+      const std::string_view tag = head_.substr(at, head_.find('>', at) - at);
+      const std::string components = attribute(tag, "NumberOfComponents").value_or("1");
+      Array array{attribute(tag, "Name").value_or(""), attribute(tag, "type").value_or(""), 0, 0};
+      array.components = number(components), array.offset = number(attribute(tag, "offset").value_or(""));
+      arrays.push_back(array);
+    }
+    return arrays;
+  }
+
+  // The values of an array that must hold `count` times its components.
+  template <class T>
+  std::vector<T> values(const Array& array, size_t count) const {
+    if (array.type == "Float32") return converted<T, float>(array, count);
+    if (array.type == "Float64") return converted<T, double>(array, count);
+    if (array.type == "Int32") return converted<T, int32_t>(array, count);
+    if (array.type == "Int64") return converted<T, int64_t>(array, count);
+    if (array.type == "UInt8") return converted<T, uint8_t>(array, count);
+    fail(fmt::format("array '{}' is of type {}, which is not known here", array.name, array.type));
+  }
+
+  size_t points() const { return number(attribute(head_, "NumberOfPoints").value_or("")); }
+
+ private:
+  static std::optional<std::string> attribute(std::string_view tag, const std::string& name) {
+    const std::string key = " " + name + "=\"";
+    const size_t at = tag.find(key);
+    if (at == std::string_view::npos) return std::nullopt;
+    const size_t start = at + key.size();
+    return std::string(tag.substr(start, tag.find('"', start) - start));
+  }
+  size_t number(const std::string& text) const {
+    if (text.empty() || text.size() > 15 || text.find_first_not_of("0123456789") != std::string::npos)
+      fail(fmt::format("has '{}' where a number should be", text));
+    return std::stoull(text);
+  }
+  template <class T, class Stored>
+  std::vector<T> converted(const Array& array, size_t count) const {
+    uint64_t size = 0;
+    const size_t wanted = count * array.components * sizeof(Stored);
+    if (array.offset + sizeof size > data_.size()) fail(fmt::format("array '{}' is cut off", array.name));
+    std::memcpy(&size, data_.data() + array.offset, sizeof size);
+    if (size != wanted || array.offset + sizeof size + wanted > data_.size())
+      fail(fmt::format("array '{}' is cut off, or not of {} points", array.name, count));
+    std::vector<T> values(count * array.components);
+    for (size_t k = 0; k < values.size(); ++k) {
+      Stored value;
+      std::memcpy(&value, data_.data() + array.offset + sizeof size + k * sizeof value, sizeof value);
+      values[k] = static_cast<T>(value);
+    }
+    return values;
+  }
+
+  std::filesystem::path path_;
+  std::string content_;
+  std::string_view head_, data_;
+};
+
+}  // namespace
+
+ParticleFrame read_vtp(const std::filesystem::path& path) {
+  const File file(path);
+  const size_t count = file.points();
+  ParticleFrame frame;
+  for (const Array& array : file.arrays()) {
+    if (array.name == "Points") {
+      const std::vector<double> x = file.values<double>(array, count);
+      for (size_t k = 0; k < count; ++k) frame.positions.push_back({x[3 * k], x[3 * k + 1], x[3 * k + 2]});
+    } else if (array.name == "radius") {
+      frame.radii = file.values<float>(array, count);
+    } else if (array.name != "connectivity" && array.name != "offsets") {
+      frame.fields.push_back({array.name, static_cast<int>(array.components), file.values<float>(array, count)});
+    }
+  }
+  if (frame.positions.size() != count || frame.radii.size() != count) file.fail("has no array 'Points' or 'radius'");
+  return frame;
+}
+
+}  // namespace scree
