@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "geometry/bounds.h"
-#include "geometry/closest_point.h"
 #include "geometry/solid_index.h"
 #include "runtime/case_physics.h"
+#include "runtime/junctions.h"
 
 namespace scree {
 
 namespace {
 
-constexpr double kSameEnd = 1e-7;  // m: fibre ends this close are one
-constexpr int kPoints = 5;         // of a line
+constexpr int kPoints = 5;  // of a line
 
 struct Probe {
   double solid_fraction = 0, speed = 0, downward = 0;
@@ -57,25 +54,9 @@ nlohmann::json text_of(const Probe& p) {
 
 }  // namespace
 
-std::vector<Vec3> junctions_in(const Case& c, const CoarseGrid& grid) {
-  std::map<std::array<long long, 3>, std::pair<Vec3, int>> ends;
-  for (const Primitive& p : c.solid.primitives) {
-    const auto* s = std::get_if<Segment>(&p.skeleton);
-    if (!s || p.radius == 0) continue;
-    for (const Vec3& end : {s->a, s->b}) {
-      const auto key = [](double x) { return std::llround(x / kSameEnd); };
-      auto& [where, count] = ends[{key(end.x), key(end.y), key(end.z)}];
-      where = end, ++count;
-    }
-  }
-  std::vector<Vec3> junctions;
-  for (const auto& [key, end] : ends)
-    if (end.second >= 3 && grid.holds(end.first)) junctions.push_back(end.first);
-  return junctions;
-}
-
 nlohmann::json junction_summary(const Case& c, const CoarseGrid& grid, const AverageFields& fields) {
-  const std::vector<Vec3> junctions = junctions_in(c, grid);
+  std::vector<Vec3> junctions = Junctions(c.solid).points();
+  std::erase_if(junctions, [&](const Vec3& x) { return !grid.holds(x); });
   if (junctions.empty() || norm(c.gravity) == 0) return nullptr;
   const auto index = make_embree_index(c.solid);
   const Vec3 down = unit(c.gravity);

@@ -7,11 +7,9 @@
 
 namespace scree {
 
-// The points in which three or more fibres end, inside the grid.
-std::vector<Vec3> junctions_in(const Case& c, const CoarseGrid& grid);
-
-// Means over the junctions of the fields on a line one grain diameter long that begins where the upward (downward)
-// vertical leaves the room that fibres leave to a grain's centre: just above and just below. Null without junctions.
+// Means, over the junctions of fibres (runtime/junctions.h) inside the grid, of the fields on a line one grain diameter
+// long that begins where the upward (downward) vertical leaves the room that fibres leave to a grain's centre: just
+// above and just below. Null without junctions.
 nlohmann::json junction_summary(const Case& c, const CoarseGrid& grid, const AverageFields& fields);
 
 }  // namespace scree

@@ -153,6 +153,21 @@ struct TouchSettings {
   Moments moments;
 };
 
+// [output.fields]: field files for ParaView (runtime/field_files.h).
+struct FieldSettings {
+  Moments moments;                 // none: nothing is written
+  std::vector<std::string> write;  // of particle_field_names()
+  bool solid = true;               // fibres and walls, too
+};
+
+// [output.residence]: how long grains stay in a layer, and where they are left in it (runtime/residence.h).
+struct ResidenceSettings {
+  bool enabled = false;
+  double interval = 1e-3;      // s between looks: the resolution
+  double entry = 0, exit = 0;  // m, heights of the layer's top and bottom, entry > exit
+  double bin = 0;              // s, of residence.csv; 0: chosen to fit
+};
+
 struct OutputSettings {
   double interval = 1e-3;  // s between rows of mass_flow.csv and meters
   double steady_from = 0,
@@ -160,6 +175,8 @@ struct OutputSettings {
   bool final_vtk = true;
   std::vector<AverageSettings> averages;
   TouchSettings touch;
+  FieldSettings fields;
+  ResidenceSettings residence;
 };
 
 struct CheckpointSettings {

@@ -72,6 +72,21 @@ SizeDistribution read_distribution(TableReader t) {
   return size;
 }
 
+void read_output(TableReader t, OutputSettings& output) {
+  output.interval = t.number("interval", kDuration, output.interval);
+  output.final_vtk = t.flag("final_vtk", output.final_vtk);
+  if (t.has("steady_window")) {
+    const std::vector<double> window = t.numbers("steady_window", between(0, 1e6, "s"), 2);
+    if (window[1] <= window[0])
+      t.fail("steady_window",
+             fmt::format("{} ends before it begins, must be [from, to] with from < to, s", t.shown("steady_window")));
+    output.steady_from = window[0];
+    output.steady_to = window[1];
+  }
+  for (const char* later : {"fields", "residence", "default_average", "average", "touch"}) t.has(later);  // read_observers(), when the rest is known
+  t.finish();
+}
+
 void read_checkpoint(TableReader t, CheckpointSettings& checkpoint) {
   checkpoint.interval = t.number("interval", positive(1e9, "s (wall-clock)"), checkpoint.interval);
   checkpoint.keep = t.whole("keep", between(0, 1000, "checkpoints (0: none is written)"), checkpoint.keep);
@@ -160,6 +175,7 @@ void read_settings(TableReader& top, Case& c) {
   TableReader neighbour = top.table("neighbour");
   c.neighbour.skin = neighbour.number("skin", between(0, 1, "m (0: chosen by the program)"), 0);
   neighbour.finish();
+  read_output(top.table("output"), c.output);
   read_checkpoint(top.table("checkpoint"), c.checkpoint);
 }
 
@@ -261,7 +277,7 @@ Case case_from(CaseNode tree, const std::string& path) {
   read_pairs(top, c);
   read_time(top, c);
   read_stages(top, c);
-  read_output(top, c);
+  read_observers(top, c);
   check_rows(top, c);
   top.finish();
   c.understood = emit_toml(tree);

@@ -7,19 +7,21 @@
 
 namespace scree {
 
-void read_settings(TableReader& top, Case& c);     // title, seed, gravity, [contact], [neighbour], [checkpoint]
-void read_materials(TableReader& top, Case& c);    // [[material]]
-void read_particles(TableReader& top, Case& c);    // [[particles]]
-void read_regions(TableReader& top, Case& c);      // [[region]]
-void read_outlets(TableReader& top, Case& c);      // [[outlet]]
-void read_meters(TableReader& top, Case& c);       // [[meter]]
-void read_solid(TableReader& top, Case& c);        // [lattice], [[fibres]], [[wall]]; fits [domain] to them
-void read_pairs(TableReader& top, Case& c);        // [[pair]]: all that can touch
-void read_time(TableReader& top, Case& c);         // [time]
-void read_stages(TableReader& top, Case& c);       // [[stage]]
-void read_output(TableReader& top, Case& c);       // [output] and what is under it
-void read_averages(TableReader& output, Case& c);  // [[output.average]]; needs the lattice, the stages, the time step
-void read_touch(TableReader& output, Case& c);     // [output.touch]; likewise
+void read_settings(TableReader& top, Case& c);   // title, seed, gravity, [contact], [neighbour], [output], [checkpoint]
+void read_materials(TableReader& top, Case& c);  // [[material]]
+void read_particles(TableReader& top, Case& c);  // [[particles]]
+void read_regions(TableReader& top, Case& c);    // [[region]]
+void read_outlets(TableReader& top, Case& c);    // [[outlet]]
+void read_meters(TableReader& top, Case& c);     // [[meter]]
+void read_solid(TableReader& top, Case& c);      // [lattice], [[fibres]], [[wall]]; fits [domain] to them
+void read_pairs(TableReader& top, Case& c);      // [[pair]]: all that can touch
+void read_time(TableReader& top, Case& c);       // [time]
+void read_stages(TableReader& top, Case& c);     // [[stage]]
+void read_observers(TableReader& top, Case& c);  // what is under [output]
+
+// What read_observers() calls; they need the lattice, the stages and the time step.
+void read_averages(TableReader& output, Case& c);  // [[output.average]]
+void read_touch(TableReader& output, Case& c);     // [output.touch]
 
 // [domain], once the bounds of all static things are known (planes apart, which are cut to the domain).
 void read_domain(TableReader& top, Case& c, const Bounds& things);

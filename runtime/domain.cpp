@@ -87,6 +87,8 @@ void Domain<Real>::insert(std::span<const ParticleState> particles) {
   invalidate_lists();
   reserve(count_ + particles.size());
   counters_.inserted += particles.size();
+  if (!particles.empty() && (insertions_.empty() || insertions_.back().step != counters_.steps))
+    insertions_.push_back({next_id_, counters_.steps});
   for (const ParticleState& s : particles) {
     Particle<Real> p;
     p.x = s.position.x, p.y = s.position.y, p.z = s.position.z;

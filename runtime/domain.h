@@ -48,6 +48,8 @@ class Domain final : public Engine {
   uint64_t state_hash() const override;
   std::vector<TouchingPair> touching_pairs() const override;
   std::vector<ContactState> contacts(Contacts which) const override;
+  bool knows_contacts() const override { return lists_valid_; }
+  const std::vector<Insertion>& insertions() const override { return insertions_; }
 
  private:
   uint32_t chunks() const { return (count_ + chunk_size_ - 1) / chunk_size_; }
@@ -94,6 +96,7 @@ class Domain final : public Engine {
     visit("travel", &Domain::travel_), visit("near_travel", &Domain::near_travel_);
     visit("lists_valid", &Domain::lists_valid_), visit("counters", &Domain::counters_);
     visit("solid_identity", &Domain::solid_identity_), visit("contacts", &Domain::contacts_);
+    visit("insertions", &Domain::insertions_);
   }
 
   Bounds box_;
@@ -129,6 +132,7 @@ class Domain final : public Engine {
   double near_travel_ = 0;  // the same since near pairs were last checked
   double max_speed_ = 0, max_overlap_ = 0;
   bool lists_valid_ = false;
+  std::vector<Insertion> insertions_;
   EngineCounters counters_;
 };
 

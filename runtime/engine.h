@@ -49,6 +49,11 @@ struct RunError : std::runtime_error {
   std::optional<Vec3> where;  // m: what lies round it is written out beside the results
 };
 
+// Particles with ids from `first_id` on went in after `step` steps.
+struct Insertion {
+  uint64_t first_id = 0, step = 0;
+};
+
 struct EngineCounters {
   uint64_t steps = 0, rebuilds = 0, near_checks = 0, particle_steps = 0, inserted = 0, removed = 0;
   std::vector<double> removed_mass;  // kg, by what the removal rule said
@@ -129,6 +134,9 @@ class Engine {
   // cost a fraction of all.
   enum class Contacts { all, with_solids };
   virtual std::vector<ContactState> contacts(Contacts which = Contacts::all) const = 0;
+  virtual bool knows_contacts() const = 0;  // false: between those
+
+  virtual const std::vector<Insertion>& insertions() const = 0;  // ascending
 };
 
 std::unique_ptr<Engine> make_engine(const Case& c, const EngineOptions& options = {});

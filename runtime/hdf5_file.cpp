@@ -1,14 +1,10 @@
 #include "runtime/hdf5_file.h"
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <cstring>
-#include <utility>
-
-#include <fmt/format.h>
 
 #include "runtime/checksum.h"
+#include "runtime/hdf5_handle.h"
 
 namespace scree {
 
@@ -17,87 +13,11 @@ namespace {
 constexpr uint64_t kBuffer = 8 << 20;       // B: smaller pieces are gathered, larger ones go straight to the file
 constexpr uint64_t kLargeArray = 64 << 10;  // B: from here on an array's extent is told to the caller
 
-// HDF5 must not clean up at exit: a file that a full disk kept from closing would be tried again, and can hang there.
-void prepare_library() {
-  static const bool prepared = [] {
-    H5dont_atexit();
-    H5open();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
-    return true;
-  }();
-  static_cast<void>(prepared);
-}
-
-// What the system said, if the innermost error of HDF5's stack quotes it; else that error.
-std::string reason() {
-  std::string text = "unknown error of the HDF5 library";
-  H5Ewalk2(
-      H5E_DEFAULT, H5E_WALK_UPWARD,
-      [](unsigned n, const H5E_error2_t* error, void* result) -> herr_t {
-        if (n == 0 && error->desc) *static_cast<std::string*>(result) = error->desc;
-        return 0;
-      },
-      &text);
-  const std::string quote = "error message = '";
-  const size_t begin = text.find(quote);
-  if (begin == std::string::npos) return text;
-  const size_t from = begin + quote.size();
-  return text.substr(from, text.find('\'', from) - from);
-}
-
-template <class Id>
-Id checked(Id id, const std::string& what) {
-  if (id < 0) throw Hdf5Error(what.empty() ? reason() : what + ": " + reason());
-  return id;
-}
-
-class Handle {
- public:
-  using Close = herr_t (*)(hid_t);
-  Handle() = default;
-  Handle(hid_t id, Close close, const std::string& what = "") : id_(checked(id, what)), close_(close) {}
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle& operator=(Handle&& other) noexcept {
-    std::swap(id_, other.id_), std::swap(close_, other.close_);
-    return *this;
-  }
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  void close() { checked(close_(std::exchange(id_, -1)), ""); }
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_ = -1;
-  Close close_ = nullptr;
-};
-
-Handle property_list(hid_t type) { return {H5Pcreate(type), H5Pclose}; }
-
-// The newest layout: HDF5 checks its own structures by checksums then. No file locks of the library's: some network
-// file systems refuse them, and the run's folder has its own (runtime/run_folder.h).
+// The newest layout: HDF5 checks its own structures by checksums then.
 Handle access_properties() {
-  Handle list = property_list(H5P_FILE_ACCESS);
+  Handle list = unlocked_access();
   checked(H5Pset_libver_bounds(list, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "");
-  checked(H5Pset_file_locking(list, false, true), "");
   return list;
-}
-
-Handle type_handle(const ElementType& type) {
-  using Kind = ElementType::Kind;
-  const auto pick = [&](hid_t one, hid_t two, hid_t four, hid_t eight) {
-    return type.size == 1 ? one : type.size == 2 ? two : type.size == 4 ? four : eight;
-  };
-  if (type.kind == Kind::record) {
-    Handle opaque(H5Tcreate(H5T_OPAQUE, type.size), H5Tclose);
-    checked(H5Tset_tag(opaque, fmt::format("record of {} bytes", type.size).c_str()), "");
-    return opaque;
-  }
-  const hid_t native = type.kind == Kind::real ? pick(-1, -1, H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE)
-                       : type.kind == Kind::whole
-                           ? pick(H5T_NATIVE_INT8, H5T_NATIVE_INT16, H5T_NATIVE_INT32, H5T_NATIVE_INT64)
-                           : pick(H5T_NATIVE_UINT8, H5T_NATIVE_UINT16, H5T_NATIVE_UINT32, H5T_NATIVE_UINT64);
-  return {H5Tcopy(native), H5Tclose};
 }
 
 // The array that is being written or read.
@@ -145,7 +65,7 @@ struct Hdf5Writer::State {
 };
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
-  prepare_library();
+  const Hdf5Lock lock;
   State& s = *state_;
   const Handle creation = property_list(H5P_FILE_CREATE);
   checked(H5Pset_userblock(creation, kHeaderBytes), "");
@@ -160,6 +80,7 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : state_(std::make_uni
 Hdf5Writer::~Hdf5Writer() = default;
 
 void Hdf5Writer::begin(const std::string& name, const ElementType& type, uint64_t count) {
+  const Hdf5Lock lock;
   State& s = *state_;
   if (s.array.is_open) throw std::logic_error("Hdf5Writer: '" + s.array.name + "' was not ended");
   const hsize_t size = count;
@@ -174,6 +95,7 @@ void Hdf5Writer::begin(const std::string& name, const ElementType& type, uint64_
 }
 
 void Hdf5Writer::append(const void* data, uint64_t count) {
+  const Hdf5Lock lock;
   State& s = *state_;
   const uint64_t bytes = count * s.array.type.size;
   s.promised += count;
@@ -188,19 +110,21 @@ void Hdf5Writer::append(const void* data, uint64_t count) {
 }
 
 void Hdf5Writer::end() {
+  const Hdf5Lock lock;
   State& s = *state_;
   s.empty_buffer();
   if (s.array.at != s.array.count) throw std::logic_error("Hdf5Writer: '" + s.array.name + "' is too short");
   const uint64_t bytes = s.array.count * s.array.type.size;
   if (bytes >= kLargeArray) {
     const haddr_t offset = H5Dget_offset(s.array.set);
-    if (offset == HADDR_UNDEF) throw Hdf5Error(s.array.name + ": " + reason());
+    if (offset == HADDR_UNDEF) throw Hdf5Error(s.array.name + ": " + hdf5_reason());
     s.extents.push_back({offset, bytes, s.checksum.value()});
   }
   s.array = {};
 }
 
 std::vector<Extent> Hdf5Writer::close() {
+  const Hdf5Lock lock;
   state_->file.close();
   return std::move(state_->extents);
 }
@@ -227,13 +151,22 @@ struct Hdf5Reader::State {
 };
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
-  prepare_library();
+  const Hdf5Lock lock;
   state_->file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access_properties()), H5Fclose);
 }
 
 Hdf5Reader::~Hdf5Reader() = default;
 
+bool Hdf5Reader::has(const std::string& name) {
+  const Hdf5Lock lock;
+  for (size_t end = name.find('/');; end = name.find('/', end + 1)) {  // the library asks for each group on the way
+    if (H5Lexists(state_->file, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+    if (end == std::string::npos) return true;
+  }
+}
+
 uint64_t Hdf5Reader::begin(const std::string& name, const ElementType& type) {
+  const Hdf5Lock lock;
   State& s = *state_;
   OpenArray a;
   a.name = name, a.type = type, a.is_open = true;
@@ -249,6 +182,7 @@ uint64_t Hdf5Reader::begin(const std::string& name, const ElementType& type) {
 }
 
 void Hdf5Reader::next(void* data, uint64_t count) {
+  const Hdf5Lock lock;
   State& s = *state_;
   if (count > s.left()) throw Hdf5Error(s.array.name + ": too short");
   char* to = static_cast<char*>(data);
@@ -265,6 +199,7 @@ void Hdf5Reader::next(void* data, uint64_t count) {
 }
 
 void Hdf5Reader::end() {
+  const Hdf5Lock lock;
   if (state_->left() > 0) throw Hdf5Error(state_->array.name + ": too long");
   state_->array = {};
 }

@@ -1,5 +1,5 @@
-// Named arrays in an HDF5 file, written and read front to back in pieces. hdf5_file.cpp is the only file that names
-// HDF5. Data lie contiguous and uncompressed; the first kHeaderBytes of the file are left to others (runtime/seal.h).
+// Named arrays in an HDF5 file, written and read front to back in pieces. Several threads may use files of their own at
+// once (runtime/hdf5_handle.h). Data lie contiguous and uncompressed; the first kHeaderBytes of the file are left to others (runtime/seal.h).
 #pragma once
 
 #include <cstdint>
@@ -62,6 +62,8 @@ class Hdf5Reader {
  public:
   explicit Hdf5Reader(const std::filesystem::path& path);
   ~Hdf5Reader();
+
+  bool has(const std::string& name);  // a group or an array
 
   // begin() returns how many elements there are; next() gives the next `count` of them; end() checks that none is left.
   uint64_t begin(const std::string& name, const ElementType& type);

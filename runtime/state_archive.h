@@ -81,6 +81,8 @@ class StateReader {
  public:
   explicit StateReader(Hdf5Reader& file) : file_(file) {}
 
+  bool has(const std::string& name) { return file_.has(name); }
+
   // Reads an array of which the caller knows the size.
   template <class T>
   void array(const std::string& name, std::span<T> values) {

@@ -195,6 +195,46 @@ TEST_F(Faults, AFullDiskStopsTheRunAndTheEarlierCheckpointIsGood) {
   EXPECT_EQ(umount(disk.c_str()), 0);
 }
 
+TEST_F(Faults, AFullDiskUnderTheFieldFilesStopsTheRunWhichGoesOnLater) {
+  const fs::path disk = path("disk");
+  fs::create_directories(disk);
+  if (mount("scree_test", disk.c_str(), "tmpfs", 0, "size=1500k") != 0)
+    GTEST_SKIP() << "not tried: a small file system cannot be mounted here";
+  const fs::path out = path("out");  // with room for checkpoints
+  fs::create_directories(out);
+  fs::create_directory_symlink(disk, out / "fields");
+  const std::string often = "output.fields.interval=2e-4";
+  const int code = execute(run_command(out, {"--resume", "--set", often}));
+  EXPECT_EQ(code, 3) << said_;
+  EXPECT_NE(said_.find((out / "fields" / "particles_").string()), std::string::npos) << said_;
+  EXPECT_NE(said_.find("No space left on device"), std::string::npos) << said_;
+  EXPECT_FALSE(checkpoints_in(out).empty());
+  EXPECT_EQ(mount("scree_test", disk.c_str(), "tmpfs", MS_REMOUNT, "size=500m"), 0);
+  expect_resumes(out);
+  const fs::path whole = path("whole");
+  ASSERT_EQ(execute(run_command(whole, {"--set", often})), 0) << said_;
+  size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(whole / "fields")) {
+    ++files;
+    EXPECT_EQ(text_of(entry.path()), text_of(disk / entry.path().filename())) << entry.path();
+  }
+  EXPECT_GT(files, 100u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(disk), fs::directory_iterator()), static_cast<long>(files));
+  EXPECT_EQ(umount(disk.c_str()), 0);
+}
+
+TEST_F(Faults, NoPlaceForFieldFilesStopsTheRunWithItsName) {
+  const fs::path out = path("blocked");
+  fs::create_directories(out);
+  std::ofstream(out / "fields") << "a file where the folder should be";
+  EXPECT_EQ(execute(run_command(out, {"--resume"})), 3);
+  EXPECT_NE(said_.find("cannot write " + (out / "fields").string()), std::string::npos) << said_;
+  fs::remove(out / "fields");
+  fs::remove(out / "summary.json");
+  ASSERT_EQ(execute(run_command(out, {"--resume"})), 0) << said_;
+  expect_undisturbed(out);
+}
+
 // A folder that cannot be written, in a way that holds for root, too.
 TEST_F(Faults, NoPlaceForCheckpointsStopsTheRunWithItsName) {
   const fs::path out = path("blocked");

@@ -221,6 +221,44 @@ TEST(Resume, TakesAChangeThatDoesNotMatter) {
   expect_same_results(out, run.out());
 }
 
+// Name and content of every field file.
+std::map<std::string, std::string> field_files(const fs::path& out) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::directory_iterator(out / "fields"))
+    files[entry.path().filename().string()] = text_of(entry.path());
+  return files;
+}
+
+TEST(Resume, LeavesTheFieldFilesOfAnUninterruptedRun) {
+  FinishedRun run(kEveryLook, {"output.fields.interval=2e-3", "output.fields.stage_ends=true"});
+  const auto expected = field_files(run.out());
+  EXPECT_GT(expected.size(), 12u);
+  const auto all = checkpoints_in(run.out());
+  for (const size_t at : {all.size() / 3, all.size() * 2 / 3}) {
+    const fs::path out = run.fresh_folder();
+    make_died_run(out, all[at]);
+    fs::copy(run.out() / "fields", out / "fields");  // later frames, too, as a killed run leaves them
+    std::ofstream(out / "fields" / "particles_999999999999.vtkhdf") << "of a run that was killed";
+    std::ofstream(out / "fields" / "solid_000000000001.vtkhdf.part") << "of a killed writer";
+    const RunResult r = resume_in(out, run.understood());
+    ASSERT_EQ(r.status, RunStatus::done) << r.message;
+    const auto found = field_files(out);
+    for (const auto& [name, content] : expected) EXPECT_TRUE(found.contains(name) && found.at(name) == content) << name;
+    EXPECT_EQ(found.size(), expected.size());
+  }
+}
+
+TEST(Resume, TakesOtherFieldFilesFromThereOn) {
+  FinishedRun run(kEveryLook, {"output.fields.stage_ends=false"});
+  EXPECT_FALSE(fs::exists(run.out() / "fields"));
+  const fs::path out = run.fresh_folder();
+  make_died_run(out, checkpoints_in(run.out())[1]);
+  const RunResult r = resume_in(out, run.understood({"output.fields.stage_ends=true"}));
+  ASSERT_EQ(r.status, RunStatus::done) << r.message;
+  EXPECT_EQ(read_summary(out)["fields"]["frames"], 1);
+  expect_same_results(out, run.out());
+}
+
 TEST(Resume, RefusesResultsWithoutACheckpoint) {
   FinishedRun run;
   fs::remove_all(run.out() / "checkpoints");

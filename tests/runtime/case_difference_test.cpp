@@ -41,6 +41,11 @@ TEST(CaseDifference, NamesTheFirstOfSeveral) {
 TEST(CaseDifference, IsNoneForWhatDoesNotChangeTheCourse) {
   EXPECT_EQ(difference_by({"title=another", "checkpoint.interval=3", "checkpoint.keep=9", "output.final_vtk=false"}),
             "");
+  EXPECT_EQ(difference_by({"output.fields.interval=0.01", "output.fields.write=[\"age\"]", "output.residence.bin=0.1"}), "");
+}
+
+TEST(CaseDifference, IsAnotherWayToMeasureResidence) {
+  EXPECT_NE(difference_by({"output.residence.interval=0.01"}).find("'output.residence.interval'"), std::string::npos);
 }
 
 TEST(CaseDifference, IsNoneForAnotherSpellingOfANumber) {

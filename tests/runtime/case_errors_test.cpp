@@ -144,6 +144,21 @@ const Wrong kWrong[] = {
     {"particles and mixture", "mass = 1e-3", "mass = 1e-3\nparticles = \"grain\"\nmixture = @{grain = 1.0}", "key 'stage.fill.mixture': {grain = 1.0} contradicts 'particles' = \"grain\""},
     {"a file that is not there", "kind = \"fill\"\nregions = [\"inside\"]\nmass = 1e-3", "kind = \"read\"\nfile = @\"none.csv\"", "key 'stage.read.file': the file \""},
     {"unknown stage", "kind = \"drain\"", "kind = @\"dry\"", "key 'stage.dry.kind': unknown value 'dry', known: fill, pour, read, settle, open, drain"},
+    // field files and residence
+    {"an unknown field", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nwrite = [\"age\", @\"velocty\"]", "key 'output.fields.write': unknown field 'velocty', known: velocity, angular_velocity, force, coordination, wall_contacts, contact_stress, age; did you mean 'velocity'?"},
+    {"a field named twice", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nwrite = @[\"age\", \"age\"]", "key 'output.fields.write': 'age' is named twice"},
+    {"no field", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nwrite = @[]", "key 'output.fields.write': [] is empty"},
+    {"an unknown key of field files", "interval = 1e-3", "interval = 1e-3\n[output.fields]\n@when = 1", "key 'output.fields.when': unknown key (value 1)"},
+    {"a word for field files", "interval = 1e-3", "interval = 1e-3\nfields = @\"all\"", "key 'output.fields': \"all\" is of the wrong type, must be a table"},
+    {"fields at a negative time", "interval = 1e-3", "interval = 1e-3\n[output.fields]\ntimes = [0.1, @-0.1]", "key 'output.fields.times': -0.1 is out of range"},
+    {"more frames than a disk holds", "discharged_fraction = 0.5", "max_time = 10\n[output.fields]\ninterval = @1e-6", "key 'output.fields.interval': 1e-06 s makes 1.01e+07 frames in the stages' 10.1 s, must be at most 100000"},
+    {"solid that is no flag", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nsolid = @\"yes\"", "key 'output.fields.solid': \"yes\" is of the wrong type, must be true or false"},
+    {"residence without an interval", "interval = 1e-3", "interval = 1e-3\n[output.residence]\ninterval = @0", "key 'output.residence.interval': 0 is out of range, must be greater than 0 and at most 1e+06 s"},
+    {"residence upwards", "interval = 1e-3", "interval = 1e-3\n[output.residence]\nexit = @30e-3", "key 'output.residence.exit': 0.03 is not below entry = 0.02, m: grains go down"},
+    {"residence switched off and asked for", "interval = 1e-3", "interval = 1e-3\n[output.residence]\nenabled = false\nbin = @0.1", "key 'output.residence.bin': 0.1 has no effect with enabled = false"},
+    {"a negative bin", "interval = 1e-3", "interval = 1e-3\n[output.residence]\nbin = @-1", "key 'output.residence.bin': -1 is out of range, must be between 0 and 1e+06 s (0: chosen to fit)"},
+    {"an unknown key of residence", "interval = 1e-3", "interval = 1e-3\n[output.residence]\n@top = 1", "key 'output.residence.top': unknown key"},
+    {"residence without a layer", "[lattice]\nmaterial = \"steel\"\ncell_size = 10e-3\ncells = [1, 1, 2]\norigin = [-5e-3, -5e-3, 0]\nfibre_diameter = 1.0e-3\n", "@[output.residence]\nentry = 20e-3\n", "key 'output.residence.exit': is missing"},
 };
 // clang-format on
 

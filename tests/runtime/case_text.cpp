@@ -53,6 +53,11 @@ void describe_settings(const Case& c, Text& t) {
   t.row("time", c.time.step, c.time.rayleigh_fraction, c.time.allow_large_step, c.neighbour.skin);
   t.row("checkpoint", c.checkpoint.interval, c.checkpoint.keep);
   t.row("output", c.output.interval, c.output.steady_from, c.output.steady_to, c.output.final_vtk);
+  const FieldSettings& f = c.output.fields;
+  t.row("fields", f.moments.interval, f.moments.times, f.moments.stage_ends, f.moments.from, f.moments.to, f.write,
+        f.solid);
+  const ResidenceSettings& r = c.output.residence;
+  t.row("residence", r.enabled, r.interval, r.entry, r.exit, r.bin);
 }
 
 void describe_matter(const Case& c, Text& t) {

@@ -1,4 +1,4 @@
-// [output], [[output.average]] and [output.touch]: what is measured, when, and how finely.
+// [[output.average]] and [output.touch]: what is measured, when, and how finely.
 #include <algorithm>
 #include <cmath>
 
@@ -38,6 +38,13 @@ During read_during(TableReader& t, const Case& c) {
   if (during != During::always && !has_drain(c))
     t.fail("during", fmt::format("{} never comes: no stage is of kind \"drain\"", t.shown("during")));
   return during;
+}
+
+// At intervals, unless the table names moments of another kind.
+Moments default_moments(TableReader& t, double interval) {
+  Moments moments;
+  if (!t.has("times") && (!t.has("stage_ends") || t.has("interval"))) moments.interval = interval;
+  return moments;
 }
 
 // ---- [[output.average]]
@@ -104,12 +111,9 @@ AverageSettings read_average(TableReader& t, const Case& c) {
   read_box(t, c, average);
   read_grid(t, c, average);
   average.during = read_during(t, c);
-  const bool own_moments = t.has("times") || (t.has("stage_ends") && !t.has("interval"));
-  Moments fallback;
-  // A grain falls half its diameter: what is seen sooner is nearly the same again.
-  if (!own_moments)
-    fallback.interval = rounded_up(0.5 * std::sqrt(2 * largest_radius(c) / std::max(norm(c.gravity), 1e-3)));
-  average.moments = read_moments(t, fallback);
+  // In which a grain falls an eighth of its diameter from rest: sooner it is seen nearly in the same place.
+  const double fall = 0.5 * std::sqrt(2 * largest_radius(c) / std::max(norm(c.gravity), 1e-3));
+  average.moments = read_moments(t, default_moments(t, rounded_up(fall)));
   t.finish();
   return average;
 }
@@ -159,7 +163,7 @@ void read_touch_cells(TableReader& t, const Case& c, TouchSettings& touch) {
 
 void read_averages(TableReader& output, Case& c) {
   std::vector<TableReader> tables = output.tables("average");
-  const bool by_default = output.flag("averages", true) && tables.empty() && has_section(c) && has_drain(c);
+  const bool by_default = output.flag("default_average", true) && tables.empty() && has_section(c) && has_drain(c);
   if (by_default) {
     tables.push_back(output.added_table("average"));
     tables.back().text("name", "lattice");
@@ -171,31 +175,14 @@ void read_touch(TableReader& output, Case& c) {
   TableReader t = output.table("touch");
   TouchSettings& touch = c.output.touch;
   touch.enabled = t.flag("enabled", c.fibres.count > 0 && has_drain(c));
-  read_touch_walls(t, c, touch);
-  read_touch_cells(t, c, touch);
-  touch.during = read_during(t, c);
-  const bool own_moments = t.has("times") || (t.has("stage_ends") && !t.has("interval"));
-  Moments fallback;
-  if (!own_moments) fallback.interval = kStepsBetweenTouches * time_step_of(c);
-  touch.moments = read_moments(t, fallback);
-  t.finish();
-}
-
-void read_output(TableReader& top, Case& c) {
-  TableReader t = top.table("output");
-  OutputSettings& output = c.output;
-  output.interval = t.number("interval", kDuration, output.interval);
-  output.final_vtk = t.flag("final_vtk", output.final_vtk);
-  if (t.has("steady_window")) {
-    const std::vector<double> window = t.numbers("steady_window", between(0, 1e6, "s"), 2);
-    if (window[1] <= window[0])
-      t.fail("steady_window",
-             fmt::format("{} ends before it begins, must be [from, to] with from < to, s", t.shown("steady_window")));
-    output.steady_from = window[0];
-    output.steady_to = window[1];
+  for (const char* key : {"walls", "cell", "around", "during", "interval", "times", "stage_ends", "window"})
+    if (!touch.enabled && t.has(key)) t.fail(key, fmt::format("{} has no effect with enabled = false", t.shown(key)));
+  if (touch.enabled) {
+    read_touch_walls(t, c, touch);
+    read_touch_cells(t, c, touch);
+    touch.during = read_during(t, c);
+    touch.moments = read_moments(t, default_moments(t, kStepsBetweenTouches * time_step_of(c)));
   }
-  read_averages(t, c);
-  read_touch(t, c);
   t.finish();
 }
 

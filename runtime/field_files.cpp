@@ -1,0 +1,70 @@
+#include "runtime/field_files.h"
+
+#include <memory>
+
+#include "runtime/particle_fields.h"
+#include "runtime/solid_mesh.h"
+#include "runtime/timer.h"
+
+namespace scree {
+
+bool writes_fields(const FieldSettings& s) {
+  return s.moments.interval > 0 || !s.moments.times.empty() || s.moments.stage_ends;
+}
+
+FieldFiles::FieldFiles(const Case& c, const std::filesystem::path& out, double dt)
+    : schedule_(c.output.fields.moments, dt),
+      particles_(out / "fields", "particles", VtkHdfType::unstructured_grid, background_),
+      solid_(out / "fields", "solid", VtkHdfType::unstructured_grid, background_) {}
+
+// A stage may end at a step that has its frame. That one stays unless there is more to show: contacts, or particles
+// that went in since and have none yet, while the frame had none either.
+bool FieldFiles::has_frame_of_now(const Engine& engine) const {
+  const auto& frames = particles_.frames();
+  if (frames.empty() || frames.back().step != engine.counters().steps) return false;
+  const bool same = newest_.inserted == engine.counters().inserted;
+  return engine.knows_contacts() ? newest_.contacts_known && same : newest_.contacts_known || same;
+}
+
+void FieldFiles::look(const RunView& run) {
+  const Timer timer(seconds_);
+  const Engine& engine = run.engine;
+  const uint64_t step = engine.counters().steps;
+  const FieldSettings& settings = run.c.output.fields;
+  if (settings.solid && run.solid.primitives.size() != newest_.solid_primitives) {
+    solid_.write(step, engine.time(), [mesh = std::make_shared<SolidMesh>(mesh_of(run.solid))](VtkHdfFile& file) {
+      write_mesh(file, *mesh);
+    });
+    newest_.solid_primitives = run.solid.primitives.size();
+  }
+  if (has_frame_of_now(engine)) return;
+  const auto frame = std::make_shared<ParticleFrame>(run.c, engine, settings.write);
+  particles_.write(step, engine.time(), [frame](VtkHdfFile& file) { frame->write(file); });
+  newest_.inserted = engine.counters().inserted, newest_.contacts_known = engine.knows_contacts();
+}
+
+void FieldFiles::finish(const RunView&) {
+  const Timer timer(seconds_);
+  particles_.prepare(), solid_.prepare();
+  particles_.settle(), solid_.settle();
+}
+
+void FieldFiles::save(StateWriter& out, const std::string& at) const {
+  particles_.settle(), solid_.settle();
+  particles_.save(out, at + "/particles"), solid_.save(out, at + "/solid");
+  out.save(at + "/newest", newest_);
+}
+
+void FieldFiles::load(StateReader& in, const std::string& at) {
+  particles_.load(in, at + "/particles"), solid_.load(in, at + "/solid");
+  in.load(at + "/newest", newest_);
+}
+
+nlohmann::json FieldFiles::summary() const {
+  return {{"frames", particles_.frames().size()},
+          {"bytes_written", particles_.bytes() + solid_.bytes()},
+          {"seconds_in_run", seconds_},
+          {"seconds_beside", particles_.seconds() + solid_.seconds()}};
+}
+
+}  // namespace scree

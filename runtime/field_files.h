@@ -1,0 +1,51 @@
+// DIR/fields: the particles, fibres and walls of a run at chosen moments, for ParaView.
+//
+//   particles.vtkhdf.series   opens all frames with their times; particles_STEP.vtkhdf is one
+//   (runtime/particle_fields.h) solid.vtkhdf.series       fibres and walls as a surface (runtime/solid_mesh.h): a frame
+//   whenever walls were opened
+//
+// look() copies what is needed and goes on; a thread beside the run compresses and writes. At most one frame waits
+// while another is written, so memory stays bounded by two frames: some 250 B a particle.
+#pragma once
+
+#include "runtime/frame_files.h"
+#include "runtime/observer.h"
+
+namespace scree {
+
+bool writes_fields(const FieldSettings& settings);
+
+class FieldFiles final : public Observer {
+ public:
+  FieldFiles(const Case& c, const std::filesystem::path& out, double dt);
+
+  std::string name() const override { return "fields"; }
+  const Schedule& schedule() const override { return schedule_; }
+  void look(const RunView& run) override;
+  void finish(const RunView& run) override;
+  void save(StateWriter& out, const std::string& at) const override;
+  void load(StateReader& in, const std::string& at) override;
+  nlohmann::json summary() const override;
+
+ private:
+  // What the newest frame shows.
+  struct Newest {
+    uint64_t inserted = 0;          // particles by then
+    uint64_t solid_primitives = 0;  // of the newest frame of the solid; 0: there is none yet
+    bool contacts_known = false;
+    template <class Visit>
+    static void for_each_field(const Visit& visit) {
+      visit("inserted", &Newest::inserted), visit("solid_primitives", &Newest::solid_primitives);
+      visit("contacts_known", &Newest::contacts_known);
+    }
+  };
+  bool has_frame_of_now(const Engine& engine) const;
+
+  Schedule schedule_;
+  mutable Background background_;
+  mutable FrameFiles particles_, solid_;
+  Newest newest_;
+  double seconds_ = 0;  // of the run
+};
+
+}  // namespace scree

@@ -1,0 +1,112 @@
+#include "runtime/frame_files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "runtime/results.h"
+#include "runtime/run_folder.h"
+#include "runtime/timer.h"
+
+namespace scree {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr size_t kFramesPerSeries = 100;  // the list is written anew after every frame at first, then ever more rarely
+
+[[noreturn]] void fail(const fs::path& path, const std::string& why) {
+  throw RunError(fmt::format("cannot write {}: {}", path.string(), why));
+}
+
+void force_to_disk(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool forced = descriptor >= 0 && fsync(descriptor) == 0;
+  const int why = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!forced) fail(path, std::strerror(why));
+}
+
+}  // namespace
+
+fs::path FrameFiles::path_of(const Frame& frame) const {
+  return folder_ / fmt::format("{}_{:012}.vtkhdf", stem_, frame.step);
+}
+
+// Nothing is left of a run that went on beyond the frames that its checkpoint knows.
+void FrameFiles::prepare() {
+  if (std::exchange(prepared_, true)) return;
+  written_ = frames_;
+  std::vector<fs::path> beyond;
+  std::error_code error;
+  for (fs::directory_iterator it(folder_, error), last; !error && it != last; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with(stem_ + "_") || name.find(".vtkhdf") == std::string::npos) continue;
+    if (std::ranges::none_of(frames_, [&](const Frame& f) { return path_of(f).filename() == name; }))
+      beyond.push_back(it->path());
+  }
+  for (const fs::path& path : beyond) fs::remove(path, error);
+  if (!frames_.empty()) write_series();
+}
+
+void FrameFiles::write(uint64_t step, double time, Fill fill) {
+  prepare();
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) fail(folder_, error.message());
+  if (!frames_.empty() && frames_.back().step == step) frames_.pop_back();
+  const Frame frame = frames_.emplace_back(Frame{step, time});
+  unforced_.push_back(path_of(frame));
+  background_->submit([this, frame, fill = std::move(fill)] { write_now(frame, fill); });
+}
+
+void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
+  const Timer timer(seconds_);
+  const fs::path path = path_of(frame), part = path.string() + ".part";
+  try {
+    VtkHdfFile file(part, type_);
+    const int64_t step = static_cast<int64_t>(frame.step);
+    file.array("FieldData/time", std::span<const double>(&frame.time, 1));
+    file.array("FieldData/step", std::span<const int64_t>(&step, 1));
+    fill(file);
+    file.close();
+    fs::rename(part, path);
+    bytes_ += fs::file_size(path);
+  } catch (const Hdf5Error& e) {
+    std::error_code ignored;
+    fs::remove(part, ignored);
+    fail(path, e.what());
+  } catch (const fs::filesystem_error& e) {
+    fail(path, e.code().message());
+  }
+  if (!written_.empty() && written_.back().step == frame.step) written_.pop_back();
+  written_.push_back(frame);
+  if (written_.size() % (1 + written_.size() / kFramesPerSeries) == 0) write_series();
+}
+
+void FrameFiles::write_series() const {
+  nlohmann::json series;
+  series["file-series-version"] = "1.0";
+  series["files"] = nlohmann::json::array();
+  for (const Frame& frame : written_)
+    series["files"].push_back({{"name", path_of(frame).filename().string()}, {"time", frame.time}});
+  write_file(folder_ / (stem_ + ".vtkhdf.series"), series.dump(1) + "\n");
+}
+
+void FrameFiles::settle() {
+  background_->finish();
+  if (unforced_.empty()) return;
+  write_series();
+  for (const fs::path& path : unforced_) force_to_disk(path);
+  sync_folder(folder_);
+  unforced_.clear();
+}
+
+}  // namespace scree

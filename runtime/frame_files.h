@@ -1,0 +1,64 @@
+// A time series of VTKHDF files in the results folder, written beside the run:
+//
+//   FOLDER/STEM_000000012345.vtkhdf   one a frame, by the step; complete under that name
+//   FOLDER/STEM.vtkhdf.series         the frames with their times (s): what to open in ParaView
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "runtime/background.h"
+#include "runtime/state_archive.h"
+#include "runtime/vtkhdf_file.h"
+
+namespace scree {
+
+class FrameFiles {
+ public:
+  using Fill = std::function<void(VtkHdfFile&)>;
+  struct Frame {
+    uint64_t step = 0;
+    double time = 0;  // s
+  };
+
+  FrameFiles(const std::filesystem::path& folder, const std::string& stem, VtkHdfType type, Background& background)
+      : folder_(folder), stem_(stem), type_(type), background_(&background) {}
+
+  // Writes the frame of this step on the background thread, once there is room in its queue; one of the same step that
+  // is there already is replaced. Throws RunError for this or an earlier frame that could not be written.
+  void write(uint64_t step, double time, Fill fill);
+
+  // Waits until all is written and forced to the disk. Throws RunError.
+  void settle();
+  // Removes what a killed run left beyond the frames that were loaded. write() does so before the first.
+  void prepare();
+
+  const std::vector<Frame>& frames() const { return frames_; }
+  uint64_t bytes() const { return bytes_; }    // written, valid after settle()
+  double seconds() const { return seconds_; }  // of the background thread; the same
+
+  void save(StateWriter& out, const std::string& at) const { out.save(at + "/frames", frames_); }
+  void load(StateReader& in, const std::string& at) { in.load(at + "/frames", frames_); }
+
+ private:
+  std::filesystem::path path_of(const Frame& frame) const;
+  void write_now(const Frame& frame, const Fill& fill);
+  void write_series() const;
+
+  std::filesystem::path folder_;
+  std::string stem_;
+  VtkHdfType type_;
+  Background* background_;
+  bool prepared_ = false;
+  std::vector<Frame> frames_;                    // handed over for writing
+  std::vector<std::filesystem::path> unforced_;  // written, perhaps not yet on the disk
+
+  // The background thread's:
+  std::vector<Frame> written_;
+  uint64_t bytes_ = 0;
+  double seconds_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,45 @@
+// What is said of each particle in a field file, each field in one row of a table.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/case.h"
+#include "runtime/engine.h"
+#include "runtime/vtkhdf_file.h"
+
+namespace scree {
+
+// The fields that a case may name, in the order of the files: velocity, angular_velocity, force, coordination,
+// wall_contacts, contact_stress, age.
+std::vector<std::string> particle_field_names();
+
+// A copy of a moment, as it will be written by another thread. SI units, numbers of single precision, in the engine's
+// order of storage:
+//   Points             m; double where single precision would move a particle by more than 1e-4 of its radius
+//   id, kind           kinds count in the case's order, from 0
+//   radius             m
+//   velocity           m/s, half a time step behind the positions; angular_velocity rad/s
+//   force, coordination, wall_contacts, contact_stress    as in runtime/contact_sums.h: N, Pa (9 components by rows)
+//   age                s since the particle was inserted
+// What comes from contacts is not a number (counts: -1) while the engine does not know its contacts.
+class ParticleFrame {
+ public:
+  ParticleFrame(const Case& c, const Engine& engine, const std::vector<std::string>& fields);
+  void write(VtkHdfFile& file) const;
+
+  // Values of the field `name` as they are written, row after row.
+  struct Column {
+    std::string name;
+    ElementType type{};
+    uint64_t components = 0;  // 0: a plain list
+    std::vector<char> values;
+    uint64_t size() const { return values.size() / type.size; }
+  };
+  const std::vector<Column>& columns() const { return columns_; }  // the first is Points
+
+ private:
+  std::vector<Column> columns_;
+};
+
+}  // namespace scree

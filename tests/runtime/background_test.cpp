@@ -1,0 +1,62 @@
+// Jobs beside a run: in order, bounded, and no error is lost.
+#include "runtime/background.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace scree {
+namespace {
+
+TEST(Background, RunsAllJobsInTheirOrder) {
+  Background background(2);
+  std::vector<int> done;
+  for (int k = 0; k < 100; ++k) background.submit([&, k] { done.push_back(k); });
+  background.finish();
+  ASSERT_EQ(done.size(), 100u);
+  for (int k = 0; k < 100; ++k) EXPECT_EQ(done[static_cast<size_t>(k)], k);
+}
+
+TEST(Background, HoldsNoMoreThanTheJobThatRunsAndThoseThatMayWait) {
+  Background background(1);
+  std::atomic<int> held = 0, most = 0;
+  for (int k = 0; k < 200; ++k) {
+    background.submit([&] { --held; });
+    most = std::max(most.load(), ++held);
+  }
+  background.finish();
+  EXPECT_EQ(held, 0);
+  EXPECT_LE(most, 3);  // a job that has ended may not have counted down when the next is counted
+}
+
+TEST(Background, ThrowsAJobsErrorAtTheNextCallAndDropsTheJobsBehindIt) {
+  Background background(1);
+  bool ran_behind = false;
+  background.submit([] { throw std::runtime_error("full"); });
+  try {
+    background.submit([&] { ran_behind = true; });
+    background.finish();
+    FAIL() << "the error was lost";
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(e.what(), "full");
+  }
+  EXPECT_FALSE(ran_behind);
+  bool ran_later = false;
+  background.submit([&] { ran_later = true; });
+  EXPECT_NO_THROW(background.finish());
+  EXPECT_TRUE(ran_later);
+}
+
+TEST(Background, FinishesItsJobsBeforeItGoes) {
+  int done = 0;
+  {
+    Background background(1);
+    for (int k = 0; k < 5; ++k) background.submit([&] { ++done; });
+  }
+  EXPECT_EQ(done, 5);
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,125 @@
+// Force, coordination and stress of particles from their contacts.
+#include "runtime/contact_sums.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "tests/scenes.h"
+
+namespace scree {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kRadius = 0.001;
+
+Case glass_case(Precision precision) {
+  Case c = empty_case(1e-6, precision);
+  add_material(c, {"glass", 2500, 1e8, 0.25});
+  add_kind(c, 0, kRadius);
+  c.pairs = {{0, 0, 0.3, 0, 0}};
+  return c;
+}
+
+double volume(double r) { return 4.0 / 3 * pi * r * r * r; }
+
+// Hertz: F = 4/3 E* sqrt(R*) overlap^1.5 along x, at R - overlap/2 from each centre.
+TEST(ContactSums, OfTwoSpheresPressedTogetherAreHertzsForceOnItsBranch) {
+  const Case c = glass_case(Precision::reference);
+  const double overlap = 1e-6, distance = 2 * kRadius - overlap;
+  const std::vector<ParticleState> pair = {sphere(c, 0, {0, 0, 0}), sphere(c, 0, {distance, 0, 0})};
+  const auto engine = make_engine(c);
+  engine->insert(pair);
+  engine->step();
+  const std::vector<ParticleState> now = engine->particles();
+  const std::vector<ContactState> contacts = engine->contacts();
+  ASSERT_EQ(contacts.size(), 1u);
+  const ContactSums sums = contact_sums(now, contacts);
+  const double stiff = 1e8 / (2 * (1 - 0.25 * 0.25)), d = contacts[0].overlap;
+  const double hertz = 4.0 / 3 * stiff * std::sqrt(kRadius / 2) * std::pow(d, 1.5);
+  for (size_t k = 0; k < 2; ++k) {
+    const double side = now[k].position.x > 0.5 * distance ? 1 : -1;
+    EXPECT_NEAR(sums.force[k].x, side * hertz, 0.02 * hertz);  // damping, too: they move apart by now
+    EXPECT_NEAR(sums.force[k].x, side * norm(contacts[0].force), 1e-15);
+    EXPECT_NEAR(sums.stress[k][0], norm(contacts[0].force) * (kRadius - 0.5 * d) / volume(kRadius), 1e-9);
+    for (int i = 1; i < 9; ++i) EXPECT_NEAR(sums.stress[k][i], 0, 1e-9);
+    EXPECT_EQ(sums.coordination[k], 1);
+    EXPECT_EQ(sums.wall_contacts[k], 0);
+  }
+}
+
+TEST(ContactSums, OfAPairAcrossAPeriodicFaceAreTheSame) {
+  Case c = glass_case(Precision::reference);
+  c.domain = {{0, 0, 0}, {0.01, 0.01, 0.01}}, c.periodic[0] = true;
+  const std::vector<ParticleState> pair = {sphere(c, 0, {0.01 - 0.9995e-3, 0.005, 0.005}),
+                                           sphere(c, 0, {0.9995e-3, 0.005, 0.005})};
+  const auto engine = make_engine(c);
+  engine->insert(pair);
+  engine->step();
+  const std::vector<ContactState> contacts = engine->contacts();
+  ASSERT_EQ(contacts.size(), 1u);
+  const ContactSums sums = contact_sums(engine->particles(), contacts);
+  const double expected = norm(contacts[0].force) * (kRadius - 0.5 * contacts[0].overlap) / volume(kRadius);
+  for (size_t k = 0; k < 2; ++k) EXPECT_NEAR(sums.stress[k][0], expected, 1e-6 * expected);
+}
+
+// Spheres one on the other: W above and W + m g below one of them, each at R from its centre, so that
+// s_zz = R (2 W + m g) / V: three halves of the weight on its cross-section, for it fills two thirds of its cylinder.
+// And over the whole column, sum V s_zz = sum m g z.
+TEST(ContactSums, StressOfARestingColumnCarriesTheWeightAbove) {
+  for (const Precision precision : {Precision::reference, Precision::mixed}) {
+    Case c = glass_case(precision);
+    c.gravity = {0, 0, -9.81};
+    add_solid(c, floor_at(0, 0.01, 0));
+    std::vector<ParticleState> column;
+    for (int k = 0; k < 6; ++k) column.push_back(sphere(c, 0, {0, 0, kRadius * (1 + 2 * k)}));
+    const auto engine = make_engine(c);
+    engine->insert(column);
+    for (int k = 0; k < 60000; ++k) engine->step();
+    std::vector<ParticleState> now = engine->particles();
+    const ContactSums sums = contact_sums(now, engine->contacts());
+    const double weight = now[0].mass * 9.81;
+    double total = 0, moment = 0;
+    for (size_t k = 0; k < now.size(); ++k) {
+      const double above = weight * static_cast<double>(5 - now[k].id), area = pi * kRadius * kRadius;
+      SCOPED_TRACE(now[k].id);
+      EXPECT_NEAR(sums.force[k].z, weight, 0.01 * weight);
+      EXPECT_NEAR(sums.stress[k][8], 1.5 * (above + 0.5 * weight) / area, 0.01 * (above + weight) / area);
+      EXPECT_NEAR(sums.stress[k][0], 0, 1e-6 * weight / area);
+      EXPECT_EQ(sums.wall_contacts[k], now[k].id == 0 ? 1 : 0);
+      EXPECT_EQ(sums.coordination[k], now[k].id == 0 || now[k].id == 5 ? 1 : 2);
+      total += volume(kRadius) * sums.stress[k][8], moment += weight * now[k].position.z;
+    }
+    EXPECT_NEAR(total, moment, 0.005 * moment);
+  }
+}
+
+TEST(ContactSums, CoordinationCountsTouchingPairs) {
+  Case c = glass_case(Precision::mixed);
+  c.gravity = {0, 0, -9.81};
+  add_solid(c, floor_at(0, 0.05, 0));
+  std::vector<ParticleState> grains;
+  for (int k = 0; k < 125; ++k)
+    grains.push_back(sphere(c, 0, {0.0021 * (k % 5) + 0.0001 * (k % 7), 0.0021 * (k / 5 % 5) + 0.0001 * (k % 3),
+                                   0.0011 + 0.0021 * (k / 25)}));
+  const auto engine = make_engine(c);
+  engine->insert(grains);
+  for (int k = 0; k < 15000; ++k) engine->step();
+  const std::vector<ParticleState> now = engine->particles();
+  const ContactSums sums = contact_sums(now, engine->contacts());
+  std::map<uint64_t, int> expected;
+  for (const Engine::TouchingPair& pair : engine->touching_pairs()) ++expected[pair.i], ++expected[pair.j];
+  int all = 0;
+  for (size_t k = 0; k < now.size(); ++k) {
+    EXPECT_EQ(sums.coordination[k], expected[now[k].id]) << now[k].id;
+    all += sums.coordination[k];
+  }
+  EXPECT_GT(all, 100);
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,244 @@
+// Field files hold what the engine has, read back by VTK's own reader.
+#include "runtime/field_files.h"
+
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <map>
+
+#include "geometry/closest_point.h"
+#include "runtime/contact_sums.h"
+#include "runtime/particle_fields.h"
+#include "runtime/solid_mesh.h"
+#include "tests/runtime/case_text.h"
+#include "tests/scenes.h"
+#include "tests/vtk_reader.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Grains of two kinds in a heap on a floor, with a fibre above it.
+Case heap_case(Precision precision = Precision::mixed) {
+  Case c = empty_case(1e-5, precision);
+  c.domain = {{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}};
+  c.gravity = {0, 0, -9.81};
+  add_material(c, {"grain", 2500, 1e7, 0.25});
+  add_kind(c, 0, 0.001), add_kind(c, 0, 0.0014);
+  c.pairs = {{0, 0, 0.3, 0.5, 0}};
+  add_solid(c, floor_at(0, 0.05, 0));
+  c.solid.primitives.push_back({Segment{{-0.01, 0, 0.004}, {0.01, 0, 0.004}}, 0.0005, 0, 0});
+  c.output.fields.moments.interval = 1e-3;
+  c.output.fields.write = particle_field_names();
+  return c;
+}
+
+std::vector<ParticleState> heap(const Case& c) {
+  std::vector<ParticleState> grains;
+  for (int k = 0; k < 27; ++k)
+    grains.push_back(sphere(c, k % 2, {0.0026 * (k % 3) - 0.003, 0.0026 * (k / 3 % 3) + 0.002, 0.0016 + 0.0027 * (k / 9)},
+                            {0.01 * k, 0, -0.1}, {1.0 * k, 2, 3}));
+  return grains;
+}
+
+// A run as observers see it.
+struct Stand {
+  explicit Stand(const Case& c) : c(c), engine(make_engine(c)) {}
+  RunView view() { return {c, *engine, c.solid, stage, 0, folder_path, log}; }
+
+  testing::Folder folder;
+  Case c;
+  std::unique_ptr<Engine> engine;
+  std::string stage = "settle";
+  fs::path folder_path = folder.path("");
+  spdlog::logger log{"test"};
+};
+
+fs::path frame_path(const Stand& s, const std::string& stem) {
+  return s.folder_path / "fields" / fmt::format("{}_{:012}.vtkhdf", stem, s.engine->counters().steps);
+}
+
+// By id: what VTK has of a field.
+std::map<uint64_t, std::vector<double>> by_id(const VtkData& d, const VtkArray& a) {
+  const VtkArray ids = d.array("point_data", "id");
+  std::map<uint64_t, std::vector<double>> rows;
+  for (size_t k = 0; k < ids.values.size(); ++k)
+    rows[static_cast<uint64_t>(ids.values[k])].assign(a.values.begin() + k * a.components,
+                                                      a.values.begin() + (k + 1) * a.components);
+  return rows;
+}
+
+class FieldFilesIn : public ::testing::TestWithParam<Precision> {};
+
+TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
+  if (!has_vtk_reader()) GTEST_SKIP() << kNoVtkReader;
+  Stand s(heap_case(GetParam()));
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  std::vector<ParticleState> grains = heap(s.c);
+  s.engine->insert(std::span(grains).first(20));
+  for (int k = 0; k < 900; ++k) s.engine->step();
+  s.engine->insert(std::span(grains).subspan(20));
+  for (int k = 0; k < 900; ++k) s.engine->step();
+  fields.look(s.view());
+  fields.finish(s.view());
+
+  const VtkData d = read_with_vtk({frame_path(s, "particles")})[0];
+  EXPECT_EQ(d.class_name, "vtkUnstructuredGrid");
+  ASSERT_EQ(d.cells.size(), grains.size());
+  for (size_t k = 0; k < d.cells.size(); ++k) EXPECT_EQ(d.cells[k], (std::vector<int64_t>{1, int64_t(k)}));
+  EXPECT_NEAR(d.array("field_data", "time").values.at(0), s.engine->time(), 1e-15);
+
+  const std::vector<ParticleState> particles = s.engine->particles();
+  const ContactSums sums = contact_sums(particles, s.engine->contacts());
+  const auto field = [&](const char* name) { return by_id(d, d.array("point_data", name)); };
+  const auto position = by_id(d, d.points), velocity = field("velocity"), spin = field("angular_velocity"),
+             force = field("force"), stress = field("contact_stress"), radius = field("radius"), kind = field("kind"),
+             coordination = field("coordination"), walls = field("wall_contacts"), age = field("age");
+  const auto expect_vector = [](const std::vector<double>& found, const Vec3& wanted) {
+    EXPECT_EQ(found, (std::vector<double>{float(wanted.x), float(wanted.y), float(wanted.z)}));
+  };
+  int touching = 0;
+  for (size_t k = 0; k < particles.size(); ++k) {
+    const ParticleState& p = particles[k];
+    SCOPED_TRACE(p.id);
+    expect_vector(position.at(p.id), p.position);
+    expect_vector(velocity.at(p.id), p.velocity);
+    expect_vector(spin.at(p.id), p.spin);
+    expect_vector(force.at(p.id), sums.force[k]);
+    EXPECT_EQ(radius.at(p.id)[0], float(p.radius));
+    EXPECT_EQ(kind.at(p.id)[0], p.kind);
+    EXPECT_EQ(coordination.at(p.id)[0], sums.coordination[k]);
+    EXPECT_EQ(walls.at(p.id)[0], sums.wall_contacts[k]);
+    for (int i = 0; i < 9; ++i) EXPECT_EQ(stress.at(p.id)[i], float(sums.stress[k][i]));
+    EXPECT_NEAR(age.at(p.id)[0], p.id < 20 ? 0.018 : 0.009, 1e-8);
+    touching += sums.coordination[k] + sums.wall_contacts[k];
+  }
+  EXPECT_GT(touching, 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, FieldFilesIn, ::testing::Values(Precision::mixed, Precision::reference),
+                         [](const auto& info) { return info.param == Precision::mixed ? "mixed" : "reference"; });
+
+TEST(FieldFiles, ShowTheSolidThatIsThere) {
+  if (!has_vtk_reader()) GTEST_SKIP() << kNoVtkReader;
+  Stand s(heap_case());
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  fields.look(s.view());
+  fields.finish(s.view());
+  const VtkData d = read_with_vtk({frame_path(s, "solid")})[0];
+  const VtkArray primitive = d.array("cell_data", "primitive"), radius = d.array("cell_data", "fibre_radius");
+  ASSERT_EQ(primitive.values.size(), d.cells.size());
+  ASSERT_GT(d.cells.size(), 50u);
+  for (size_t k = 0; k < d.cells.size(); ++k) {
+    const Primitive& p = s.c.solid.primitives.at(static_cast<size_t>(primitive.values[k]));
+    EXPECT_EQ(radius.values[k], float(p.radius));
+    EXPECT_TRUE(d.cells[k][0] == 5 || d.cells[k][0] == 9);
+    for (size_t i = 1; i < d.cells[k].size(); ++i) {
+      const double* x = &d.points.values.at(3 * static_cast<size_t>(d.cells[k][i]));
+      EXPECT_NEAR(distance(p, {x[0], x[1], x[2]}), 0, 1e-8);
+    }
+  }
+}
+
+TEST(FieldFiles, OfNoParticlesAreReadToo) {
+  if (!has_vtk_reader()) GTEST_SKIP() << kNoVtkReader;
+  Stand s(heap_case());
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  s.engine->step();
+  fields.look(s.view());
+  fields.finish(s.view());
+  const VtkData d = read_with_vtk({frame_path(s, "particles")})[0];
+  EXPECT_EQ(d.cells.size(), 0u);
+}
+
+TEST(FieldFiles, OfManyParticlesKeepEachInItsPlace) {
+  if (!has_vtk_reader()) GTEST_SKIP() << kNoVtkReader;
+  testing::Folder folder;
+  std::vector<float> points, tens;  // three pieces, the last one shorter
+  for (int k = 0; k < 150000; ++k) {
+    for (int i = 0; i < 3; ++i) points.push_back(float(k) + 0.25f * float(i));
+    tens.push_back(10 * float(k));
+  }
+  const fs::path path = folder.path("many.vtkhdf");
+  VtkHdfFile file(path, VtkHdfType::unstructured_grid);
+  write_vertices(file, element_type<float>(), points.data(), tens.size());
+  file.array("PointData/tens", std::span<const float>(tens));
+  file.close();
+  const VtkData d = read_with_vtk({path})[0];
+  const VtkArray read = d.array("point_data", "tens");
+  EXPECT_EQ(d.points.values, std::vector<double>(points.begin(), points.end()));
+  EXPECT_EQ(read.values, std::vector<double>(tens.begin(), tens.end()));
+}
+
+// ---- without VTK
+
+std::vector<float> written(const fs::path& path, const std::string& name) {
+  Hdf5Reader file(path);
+  std::vector<float> values;
+  StateReader(file).load("VTKHDF/" + name, values);
+  return values;
+}
+
+TEST(FieldFiles, SayThatContactsAreUnknownAfterAnInsertion) {
+  Stand s(heap_case());
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  s.engine->insert(heap(s.c));
+  const ParticleFrame before(s.c, *s.engine, {"force", "coordination"});
+  const auto value = [](const ParticleFrame::Column& c, auto like) {
+    std::memcpy(&like, c.values.data(), sizeof like);
+    return like;
+  };
+  ASSERT_EQ(before.columns()[4].name, "force");
+  EXPECT_TRUE(std::isnan(value(before.columns()[4], 0.0f)));
+  EXPECT_EQ(value(before.columns()[5], int16_t{}), -1);
+  s.engine->step();
+  const ParticleFrame after(s.c, *s.engine, {"force", "coordination"});
+  EXPECT_FALSE(std::isnan(value(after.columns()[4], 0.0f)));
+  EXPECT_GE(value(after.columns()[5], int16_t{}), 0);
+}
+
+// At the end of a stage that opens a wall contacts are unknown, and the frame from before it has them.
+TEST(FieldFiles, KeepTheFrameOfAStepThatKnowsItsContacts) {
+  Stand s(heap_case());
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  std::vector<ParticleState> grains = heap(s.c);
+  s.engine->insert(std::span(grains).first(20));
+  for (int k = 0; k < 50; ++k) s.engine->step();
+  fields.look(s.view());
+  s.engine->open_walls({});
+  fields.look(s.view());
+  fields.finish(s.view());
+  for (const float f : written(frame_path(s, "particles"), "PointData/age")) EXPECT_NEAR(f, 5e-4, 1e-8);
+  EXPECT_EQ(fields.summary()["frames"], 1);
+  Hdf5Reader file(frame_path(s, "particles"));
+  std::vector<int16_t> coordination;
+  StateReader(file).load("VTKHDF/PointData/coordination", coordination);
+  EXPECT_EQ(std::ranges::count(coordination, -1), 0);
+}
+
+TEST(FieldFiles, OnlyNamedFieldsAreWritten) {
+  Stand s(heap_case());
+  s.c.output.fields.write = {"age"};
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  s.engine->insert(heap(s.c));
+  s.engine->step();
+  fields.look(s.view());
+  fields.finish(s.view());
+  Hdf5Reader file(frame_path(s, "particles"));
+  for (const char* name : {"age", "id", "radius", "kind"}) EXPECT_TRUE(file.has(std::string("VTKHDF/PointData/") + name));
+  for (const char* name : {"velocity", "force"}) EXPECT_FALSE(file.has(std::string("VTKHDF/PointData/") + name));
+}
+
+// A wide domain of small grains: single precision would move them.
+TEST(FieldFiles, TakeDoubleWherePositionsNeedIt) {
+  Case c = heap_case();
+  const auto engine = make_engine(c);
+  EXPECT_EQ(ParticleFrame(c, *engine, {}).columns()[0].type.size, sizeof(float));
+  c.domain.max.x = 20;
+  EXPECT_EQ(ParticleFrame(c, *engine, {}).columns()[0].type.size, sizeof(double));
+}
+
+}  // namespace
+}  // namespace scree
