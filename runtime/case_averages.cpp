@@ -94,7 +94,8 @@ void read_grid(TableReader& t, const Case& c, AverageSettings& average) {
   if (!(cells <= kMostCells))
     t.fail("spacing",
            fmt::format("{} m makes {:.3g} cells, must be at most {:g}", t.shown("spacing"), cells, kMostCells));
-  require_memory(t.place("spacing"), fmt::format("the averages '{}'", average.name), memory_of_average(average));
+  require_memory(t.place("spacing"), fmt::format("the cells of average '{}' need", average.name),
+                 memory_of_average(average));
   const Vec3 edge = grid_of(average, c).spacing;
   const double longest = std::max({edge.x, edge.y, edge.z}), shortest = std::min({edge.x, edge.y, edge.z});
   const double most = CoarseGrid::kWidestKernel * shortest;
@@ -156,7 +157,7 @@ void read_touch_cells(TableReader& t, const Case& c, TouchSettings& touch) {
   const double cells = cells_of_touch(c);
   if (!(cells <= kMostCells))
     t.fail("cell", fmt::format("{} m makes {:.3g} cells, must be at most {:g}", t.shown("cell"), cells, kMostCells));
-  require_memory(t.place("cell"), "the touch maps", cells * kBytesPerTouchCell);
+  require_memory(t.place("cell"), "the cells of touch maps need", cells * kBytesPerTouchCell);
 }
 
 }  // namespace

@@ -9,7 +9,9 @@
 #include <optional>
 #include <sstream>
 
+#include "runtime/average_grid.h"
 #include "runtime/case_size.h"
+#include "runtime/touch_surface.h"
 
 namespace scree {
 
@@ -111,8 +113,11 @@ double memory_of_particles(const Case& c, double count) {
 double memory_of_primitives(double count) { return count * kBytesPerPrimitive; }
 
 double memory_needed(const Case& c) {
-  return kFixedBytes + memory_of_particles(c, expected_particles(c)) +
-         memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
+  double bytes = kFixedBytes + memory_of_particles(c, expected_particles(c)) +
+                 memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
+  for (const AverageSettings& average : c.output.averages) bytes += memory_of_average(average);
+  if (c.output.touch.enabled) bytes += kBytesPerTouchCell * cells_of_touch(c);
+  return bytes;
 }
 
 std::string bytes_text(double bytes) {

