@@ -35,7 +35,7 @@ StressSample sample_of(const Vec3& point, const Vec3& branch, const Vec3& f) {
            0.5 * (f.x * l.z + f.z * l.x)}};
 }
 
-std::vector<StressSample> stress_samples(const std::vector<ContactState>& contacts,
+std::vector<StressSample> stress_samples(std::span<const ContactState> contacts,
                                          const std::vector<ParticleState>& particles) {
   std::vector<StressSample> samples;
   samples.reserve(2 * contacts.size());
@@ -116,12 +116,15 @@ AverageSums::AverageSums(const CoarseGrid& grid)
 
 void AverageSums::add(const Engine& engine, const Case& c) {
   const std::vector<ParticleState> particles = engine.particles();
-  std::vector<GrainSample> grains(particles.size());
-  parallel_for_each(particles.size(), [&](size_t k) { grains[k] = sample_of(particles[k]); });
+  std::vector<GrainSample> grains;
+  for (const ParticleState& p : particles)
+    if (grid_.holds(p.position)) grains.push_back(sample_of(p));
   deposit<kGrainValues>(grid_, grains, grains_);
-  std::vector<StressSample> stresses = stress_samples(engine.contacts(), particles);
-  wrap_into(c, stresses);
-  deposit<kStressValues>(grid_, stresses, stresses_);
+  engine.visit_contacts([&](std::span<const ContactState> contacts) {
+    std::vector<StressSample> stresses = stress_samples(contacts, particles);
+    wrap_into(c, stresses);
+    deposit<kStressValues>(grid_, stresses, stresses_);
+  });
   ++looks_;
 }
 

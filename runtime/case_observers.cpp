@@ -15,7 +15,7 @@ constexpr double kMostFrames = 1e5;
 
 void check_frames(const TableReader& t, const Case& c, const Moments& m) {
   if (m.interval == 0) return;
-  const double frames = std::min(longest_time(c), m.to - m.from) / m.interval;
+  const double frames = (std::min(longest_time(c), m.to) - m.from) / m.interval;
   if (frames <= kMostFrames) return;
   t.fail("interval", fmt::format("{} s makes {:.3g} frames in the stages' {:.4g} s, must be at most {:g}: a longer "
                                  "interval, or a window",
@@ -28,8 +28,6 @@ void read_fields(TableReader t, Case& c) {
   const std::vector<std::string> known = particle_field_names();
   for (const std::string& name : t.texts("write", known)) {
     t.index_of("write", name, "field", known);
-    if (std::ranges::find(fields.write, name) != fields.write.end())
-      t.fail("write", fmt::format("'{}' is named twice", name));
     fields.write.push_back(name);
   }
   fields.solid = t.flag("solid", fields.solid);

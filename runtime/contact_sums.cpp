@@ -6,35 +6,44 @@ namespace scree {
 
 namespace {
 
-// m += v (x) w
-void add_product(std::array<double, 9>& m, const Vec3& v, const Vec3& w) {
-  const double a[] = {v.x, v.y, v.z}, b[] = {w.x, w.y, w.z};
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) m[3 * r + c] += a[r] * b[c];
+using Stress = std::array<float, 6>;
+
+// s += scale sym(v (x) w)
+void add_product(Stress& s, double scale, const Vec3& v, const Vec3& w) {
+  const double sum[] = {v.x * w.x,
+                        v.y * w.y,
+                        v.z * w.z,
+                        0.5 * (v.x * w.y + v.y * w.x),
+                        0.5 * (v.y * w.z + v.z * w.y),
+                        0.5 * (v.x * w.z + v.z * w.x)};
+  for (int k = 0; k < 6; ++k) s[k] += static_cast<float>(scale * sum[k]);
 }
+
+double inverse_volume(double radius) { return 3 / (4 * std::numbers::pi * radius * radius * radius); }
 
 }  // namespace
 
-ContactSums contact_sums(std::span<const ParticleState> particles, std::span<const ContactState> contacts) {
+ContactSums contact_sums(std::span<const ParticleState> particles, const Engine& engine) {
+  if (!engine.knows_contacts()) return {};
   const size_t n = particles.size();
   ContactSums sums{std::vector<Vec3>(n, Vec3{0, 0, 0}), std::vector<uint16_t>(n), std::vector<uint16_t>(n),
-                   std::vector<std::array<double, 9>>(n)};
-  for (const ContactState& k : contacts) {
-    sums.force[k.i] += k.force;
-    add_product(sums.stress[k.i], k.point - particles[k.i].position, k.force);
-    if (k.with_solid) {
-      ++sums.wall_contacts[k.i];
-      continue;
+                   std::vector<Stress>(n)};
+  engine.visit_contacts([&](std::span<const ContactState> contacts) {
+    for (const ContactState& k : contacts) {
+      const ParticleState& i = particles[k.i];
+      sums.force[k.i] += k.force;
+      add_product(sums.stress[k.i], -inverse_volume(i.radius), k.point - i.position, k.force);
+      if (k.with_solid) {
+        ++sums.wall_contacts[k.i];
+        continue;
+      }
+      // From j the point lies along the normal; its own coordinates may be those beside i's periodic image.
+      const ParticleState& j = particles[k.j];
+      ++sums.coordination[k.i], ++sums.coordination[k.j];
+      sums.force[k.j] -= k.force;
+      add_product(sums.stress[k.j], inverse_volume(j.radius), (j.radius - 0.5 * k.overlap) * k.normal, k.force);
     }
-    // From j the point lies along the normal; its own coordinates may be those of i's periodic image.
-    ++sums.coordination[k.i], ++sums.coordination[k.j];
-    sums.force[k.j] -= k.force;
-    add_product(sums.stress[k.j], (particles[k.j].radius - 0.5 * k.overlap) * k.normal, -k.force);
-  }
-  for (size_t i = 0; i < n; ++i) {
-    const double r = particles[i].radius, scale = -3 / (4 * std::numbers::pi * r * r * r);
-    for (double& s : sums.stress[i]) s *= scale;
-  }
+  });
   return sums;
 }
 

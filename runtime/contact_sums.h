@@ -14,19 +14,17 @@ namespace scree {
 //   force          F = sum f_c over all its contacts, N, without gravity
 //   coordination   particles that touch it
 //   wall_contacts  fibres and wall surfaces that touch it
-//   stress         s_ab = -1/V sum (x_c - x)_a f_c,b over all its contacts, Pa, V = 4/3 pi R^3, rows a, columns b; x_c
-//   is
-//                  the contact point. Compression is positive: p = (s_xx + s_yy + s_zz) / 3. A packing of solid
-//                  fraction phi bears phi times its mean. It is symmetric where the contacts' torques cancel.
+//   stress         s = -1/V sum sym((x_c - x) (x) f_c) over all its contacts, Pa; V = 4/3 pi R^3, x_c the contact's
+//                  point, sym(A) = (A + A^T) / 2, which leaves out the contacts' torque. Compression is positive:
+//                  p = (s_xx + s_yy + s_zz) / 3. A packing of solid fraction phi bears phi times its mean.
 // Source of the stress: Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48 (1981) 339, for one particle.
 struct ContactSums {
   std::vector<Vec3> force;
   std::vector<uint16_t> coordination, wall_contacts;
-  std::vector<std::array<double, 9>> stress;
+  std::vector<std::array<float, 6>> stress;  // xx, yy, zz, xy, yz, xz
 };
 
-// `contacts` are those of Engine::contacts(), `particles` of Engine::particles() at the same moment; so are the
-// indices.
-ContactSums contact_sums(std::span<const ParticleState> particles, std::span<const ContactState> contacts);
+// `particles` are Engine::particles() of the moment. Empty while the engine does not know its contacts.
+ContactSums contact_sums(std::span<const ParticleState> particles, const Engine& engine);
 
 }  // namespace scree

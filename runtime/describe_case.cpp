@@ -82,6 +82,17 @@ double measured_rate(const Case& c) {
   return static_cast<double>(engine->counters().particle_steps - before) / seconds;
 }
 
+constexpr double kBytesInFrame = 50;  // of a particle, compressed, with all fields: measured on the demo
+
+// Of particles in DIR/fields.
+double most_frames(const Case& c) {
+  const Moments& m = c.output.fields.moments;
+  double frames = static_cast<double>(m.times.size());
+  if (m.stage_ends) frames += static_cast<double>(c.stages.size());
+  if (m.interval > 0) frames += std::floor(std::max(0.0, std::min(longest_time(c), m.to) - m.from) / m.interval);
+  return frames;
+}
+
 std::string describe_case(const Case& c) {
   const TimeScales s = time_scales(c);
   const double particles = expected_particles(c);
@@ -103,6 +114,9 @@ std::string describe_case(const Case& c) {
     line(k == 0 ? "stages" : "", fmt::format("{}. {}", k + 1, stage_text(c, c.stages[k])));
   if (const double t = longest_time(c); t > 0)
     line("physical time", fmt::format("at most {:.4g} s = {:.0f} steps", t, t / s.step));
+  if (const double frames = most_frames(c); frames > 0)
+    line("field files",
+         fmt::format("at most {:.0f} frames of about {}", frames, bytes_text(kBytesInFrame * particles)));
   const AvailableMemory available = available_memory();
   line("memory", fmt::format("about {}, of {} available", bytes_text(memory_needed(c)), bytes_text(available.bytes)));
   return text;

@@ -255,22 +255,34 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
 }
 
 template <class Real>
+void Domain<Real>::visit_contacts(const SeeContacts& see, Contacts which) const {
+  if (!lists_valid_) return;
+  constexpr size_t kAtOnce = 64;  // chunks
+  std::vector<std::vector<ContactState>> found(std::min(kAtOnce, contacts_.size()));
+  for (size_t first = 0; first < contacts_.size(); first += kAtOnce) {
+    const size_t last = std::min(first + kAtOnce, contacts_.size());
+    parallel_for(last - first, [&](size_t k) {
+      const size_t c = first + k;
+      found[k].clear();
+      const auto add = [&](const TouchingContact& t) {
+        const bool solid = t.skeleton >= 0;
+        if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
+        found[k].push_back({t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point,
+                            t.force, t.slip});
+      };
+      const ChunkTask<Real> task = chunk_task(c, nullptr);
+      if (which == Contacts::all) visit_touching_pairs<Real>(task, contacts_[c], add);
+      visit_touching_solids<Real>(task, contacts_[c], add);
+    });
+    for (size_t k = 0; k < last - first; ++k) see(found[k]);
+  }
+}
+
+template <class Real>
 std::vector<ContactState> Domain<Real>::contacts(Contacts which) const {
-  if (!lists_valid_) return {};
-  std::vector<std::vector<ContactState>> found(contacts_.size());
-  parallel_for(found.size(), [&](size_t c) {
-    const auto add = [&](const TouchingContact& t) {
-      const bool solid = t.skeleton >= 0;
-      if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
-      found[c].push_back(
-          {t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force, t.slip});
-    };
-    const ChunkTask<Real> task = chunk_task(c, nullptr);
-    if (which == Contacts::all) visit_touching_pairs<Real>(task, contacts_[c], add);
-    visit_touching_solids<Real>(task, contacts_[c], add);
-  });
   std::vector<ContactState> result;
-  for (const auto& part : found) result.insert(result.end(), part.begin(), part.end());
+  visit_contacts([&](std::span<const ContactState> part) { result.insert(result.end(), part.begin(), part.end()); },
+                 which);
   return result;
 }
 

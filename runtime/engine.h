@@ -135,6 +135,9 @@ class Engine {
   enum class Contacts { all, with_solids };
   virtual std::vector<ContactState> contacts(Contacts which = Contacts::all) const = 0;
   virtual bool knows_contacts() const = 0;  // false: between those
+  // The same list in pieces, so that not all of it is in memory at once (128 B each, some three a particle).
+  using SeeContacts = std::function<void(std::span<const ContactState>)>;
+  virtual void visit_contacts(const SeeContacts& see, Contacts which = Contacts::all) const = 0;
 
   virtual const std::vector<Insertion>& insertions() const = 0;  // ascending
 };

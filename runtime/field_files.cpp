@@ -17,6 +17,14 @@ FieldFiles::FieldFiles(const Case& c, const std::filesystem::path& out, double d
       particles_(out / "fields", "particles", VtkHdfType::unstructured_grid, background_),
       solid_(out / "fields", "solid", VtkHdfType::unstructured_grid, background_) {}
 
+// The writer works on what goes next.
+FieldFiles::~FieldFiles() {
+  try {
+    background_.finish();
+  } catch (const RunError&) {  // told by finish(), or the run has failed for another reason
+  }
+}
+
 // A stage may end at a step that has its frame. That one stays unless there is more to show: contacts, or particles
 // that went in since and have none yet, while the frame had none either.
 bool FieldFiles::has_frame_of_now(const Engine& engine) const {
@@ -38,6 +46,7 @@ void FieldFiles::look(const RunView& run) {
     newest_.solid_primitives = run.solid.primitives.size();
   }
   if (has_frame_of_now(engine)) return;
+  background_.finish();  // one frame in memory at a time
   const auto frame = std::make_shared<ParticleFrame>(run.c, engine, settings.write);
   particles_.write(step, engine.time(), [frame](VtkHdfFile& file) { frame->write(file); });
   newest_.inserted = engine.counters().inserted, newest_.contacts_known = engine.knows_contacts();

@@ -1,11 +1,11 @@
 // DIR/fields: the particles, fibres and walls of a run at chosen moments, for ParaView.
 //
-//   particles.vtkhdf.series   opens all frames with their times; particles_STEP.vtkhdf is one
-//   (runtime/particle_fields.h) solid.vtkhdf.series       fibres and walls as a surface (runtime/solid_mesh.h): a frame
-//   whenever walls were opened
+//   particles.vtkhdf.series   opens all frames with their times; particles_STEP.vtkhdf is one: the fields are in
+//                             runtime/particle_fields.h
+//   solid.vtkhdf.series       fibres and walls as a surface (runtime/solid_mesh.h), a frame whenever walls were opened
 //
-// look() copies what is needed and goes on; a thread beside the run compresses and writes. At most one frame waits
-// while another is written, so memory stays bounded by two frames: some 250 B a particle.
+// look() copies what is needed and goes on; a thread beside the run compresses and writes. One frame is in memory at a
+// time: if the one before is not written yet, look() waits. That and its making take kFieldBytesPerParticle.
 #pragma once
 
 #include "runtime/frame_files.h"
@@ -13,11 +13,14 @@
 
 namespace scree {
 
+inline constexpr double kFieldBytesPerParticle = 250;
+
 bool writes_fields(const FieldSettings& settings);
 
 class FieldFiles final : public Observer {
  public:
   FieldFiles(const Case& c, const std::filesystem::path& out, double dt);
+  ~FieldFiles() override;
 
   std::string name() const override { return "fields"; }
   const Schedule& schedule() const override { return schedule_; }

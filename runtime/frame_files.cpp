@@ -104,7 +104,8 @@ void FrameFiles::settle() {
   background_->finish();
   if (unforced_.empty()) return;
   write_series();
-  for (const fs::path& path : unforced_) force_to_disk(path);
+  for (const fs::path& path : unforced_)
+    if (fs::exists(path)) force_to_disk(path);  // not there: it could not be written, and that was told
   sync_folder(folder_);
   unforced_.clear();
 }

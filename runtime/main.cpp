@@ -151,7 +151,8 @@ int main(int argc, char** argv) {
       "  scree check cases/olhx/paper_088.toml   what would run, how long, how much memory\n"
       "  ls cases/examples                       one example per feature\n"};
   app.footer(
-      "Results: mass_flow.csv, meters.csv, summary.json, particles.vtp (ParaView, OVITO), fields/ (ParaView), residence.csv, retained.csv, case.toml, run.log.\n"
+      "Results: mass_flow.csv, meters.csv, summary.json, particles.vtp (ParaView, OVITO), fields/ (ParaView),\n"
+      "residence.csv, retained.csv, case.toml, run.log.\n"
       "A run that was interrupted, killed or failed goes on to the same bits:  scree resume DIR\n"
       "Exit codes: 0 done, 2 bad input, 3 the run failed, 130 interrupted (Ctrl-C ends a run cleanly).");
   app.set_version_flag("--version", "scree 0.1.0");

@@ -11,6 +11,8 @@
 
 #include "runtime/average_grid.h"
 #include "runtime/case_size.h"
+#include "runtime/field_files.h"
+#include "runtime/residence.h"
 #include "runtime/touch_surface.h"
 
 namespace scree {
@@ -113,7 +115,9 @@ double memory_of_particles(const Case& c, double count) {
 double memory_of_primitives(double count) { return count * kBytesPerPrimitive; }
 
 double memory_needed(const Case& c) {
-  double bytes = kFixedBytes + memory_of_particles(c, expected_particles(c)) +
+  const double per_particle = (writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0) +
+                              (c.output.residence.enabled ? kResidenceBytesPerParticle : 0);
+  double bytes = kFixedBytes + memory_of_particles(c, expected_particles(c)) + per_particle * expected_particles(c) +
                  memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
   for (const AverageSettings& average : c.output.averages) bytes += memory_of_average(average);
   if (c.output.touch.enabled) bytes += kBytesPerTouchCell * cells_of_touch(c);

@@ -88,7 +88,7 @@ const std::array kFields = {
           }},
     Field{"contact_stress", true,
           [](const Source& s, const char* name) {
-            return column<float>(name, 9, s.particles.size(), [&](size_t k, uint64_t i) {
+            return column<float>(name, 6, s.particles.size(), [&](size_t k, uint64_t i) {
               return s.contacts_known ? s.sums.stress[k][i] : kUnknown;
             });
           }},
@@ -120,7 +120,7 @@ ParticleFrame::ParticleFrame(const Case& c, const Engine& engine, const std::vec
   const auto wanted = [&](const Field& field) { return std::ranges::find(fields, field.name) != fields.end(); };
   Source s{engine.particles(), engine.knows_contacts(), {}, engine.time(), engine.dt(), engine.insertions()};
   if (s.contacts_known && std::ranges::any_of(kFields, [&](const Field& f) { return f.from_contacts && wanted(f); }))
-    s.sums = contact_sums(s.particles, engine.contacts());
+    s.sums = contact_sums(s.particles, engine);
   const size_t n = s.particles.size();
   columns_.push_back(points(c, s.particles));
   columns_.push_back(column<uint32_t>("id", 0, n, [&](size_t k, uint64_t) { return s.particles[k].id; }));

@@ -20,7 +20,7 @@ std::vector<std::string> particle_field_names();
 //   id, kind           kinds count in the case's order, from 0
 //   radius             m
 //   velocity           m/s, half a time step behind the positions; angular_velocity rad/s
-//   force, coordination, wall_contacts, contact_stress    as in runtime/contact_sums.h: N, Pa (9 components by rows)
+//   force, coordination, wall_contacts, contact_stress    as in runtime/contact_sums.h: N, Pa (xx yy zz xy yz xz)
 //   age                s since the particle was inserted
 // What comes from contacts is not a number (counts: -1) while the engine does not know its contacts.
 class ParticleFrame {

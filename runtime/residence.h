@@ -14,6 +14,8 @@
 
 namespace scree {
 
+inline constexpr double kResidenceBytesPerParticle = 20;
+
 // Masses by the time that they took.
 struct ResidenceTimes {
   std::vector<std::pair<double, double>> taken;  // s, kg; ascending

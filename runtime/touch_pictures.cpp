@@ -206,7 +206,10 @@ void write_touch_pictures(const std::filesystem::path& folder, const Case& c, co
     std::vector<const TouchPatch*> faces;
     for (const TouchPatch& p : surface.patches())
       if (!p.fibre && c.solid.primitives[p.primitive].wall == w) faces.push_back(&p);
-    if (!faces.empty()) draw_wall(folder, c.solid.walls[w], faces, surface, record);
+    const bool touched = std::ranges::any_of(faces, [&](const TouchPatch* p) {
+      return means_of(*p, surface, record, [](uint32_t, uint32_t) { return true; }).contacts > 0;
+    });
+    if (touched) draw_wall(folder, c.solid.walls[w], faces, surface, record);
   }
 }
 

@@ -2,7 +2,7 @@
 //
 //   /VTKHDF            attributes Version = [1, 0], Type = "UnstructuredGrid" or "ImageData"
 //     Points, ...      what the type asks for
-//     PointData/NAME   one value per point; N x 3 is a vector, N x 9 a tensor by rows
+//     PointData/NAME   one value per point; N x 3 is a vector, N x 6 a tensor xx yy zz xy yz xz
 //     CellData/NAME, FieldData/NAME
 //
 // Version 1.0 has these two types only. Arrays are in pieces of some 65,000 rows, shuffled and gzipped: any HDF5 reader

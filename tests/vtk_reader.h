@@ -13,11 +13,18 @@
 
 namespace scree {
 
-inline bool has_vtk_reader() {
-  static const bool has = std::system("python3 -c 'import vtkmodules.vtkIOHDF' 2>/dev/null") == 0;
-  return has;
+// The Python that has it: the one on the path, or Debian's own. Empty: none.
+inline const std::string& vtk_python() {
+  static const std::string python = [] {
+    for (const std::string name : {"python3", "/usr/bin/python3"})
+      if (std::system((name + " -c 'import vtkmodules.vtkIOHDF' 2>/dev/null").c_str()) == 0) return name;
+    return std::string();
+  }();
+  return python;
 }
-inline const char* const kNoVtkReader = "not tried: VTK's Python reader is not installed (apt-get install python3-vtk9)";
+inline bool has_vtk_reader() { return !vtk_python().empty(); }
+inline const char* const kNoVtkReader =
+    "not tried: VTK's Python reader is not installed (apt-get install python3-vtk9)";
 
 struct VtkArray {
   uint64_t components = 0;
@@ -41,7 +48,7 @@ struct VtkData {
 
 // Fails the test with what VTK says if it cannot read one.
 inline std::vector<VtkData> read_with_vtk(const std::vector<std::filesystem::path>& files) {
-  std::string command = std::string("python3 ") + SCREE_SOURCE_DIR + "/tests/runtime/vtk_dump.py";
+  std::string command = vtk_python() + " " + SCREE_SOURCE_DIR + "/tests/runtime/vtk_dump.py";
   for (const auto& file : files) command += " '" + file.string() + "'";
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   std::string text;

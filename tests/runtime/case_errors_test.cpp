@@ -164,8 +164,8 @@ const Wrong kWrong[] = {
     {"a file that is not there", "kind = \"fill\"\nregions = [\"inside\"]\nmass = 1e-3", "kind = \"read\"\nfile = @\"none.csv\"", "key 'stage.read.file': the file \""},
     {"unknown stage", "kind = \"drain\"", "kind = @\"dry\"", "key 'stage.dry.kind': unknown value 'dry', known: fill, pour, read, settle, open, drain"},
     // field files and residence
-    {"an unknown field", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nwrite = [\"age\", @\"velocty\"]", "key 'output.fields.write': unknown field 'velocty', known: velocity, angular_velocity, force, coordination, wall_contacts, contact_stress, age; did you mean 'velocity'?"},
-    {"a field named twice", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nwrite = @[\"age\", \"age\"]", "key 'output.fields.write': 'age' is named twice"},
+    {"an unknown field", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nwrite = @[\"age\", \"velocty\"]", "key 'output.fields.write': unknown field 'velocty', known: velocity, angular_velocity, force, coordination, wall_contacts, contact_stress, age; did you mean 'velocity'?"},
+    {"a field named twice", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nwrite = [\"age\", @\"age\"]", "key 'output.fields.write': 'age' is named twice"},
     {"no field", "interval = 1e-3", "interval = 1e-3\n[output.fields]\nwrite = @[]", "key 'output.fields.write': [] is empty"},
     {"an unknown key of field files", "interval = 1e-3", "interval = 1e-3\n[output.fields]\n@when = 1", "key 'output.fields.when': unknown key (value 1)"},
     {"a word for field files", "interval = 1e-3", "interval = 1e-3\nfields = @\"all\"", "key 'output.fields': \"all\" is of the wrong type, must be a table"},

@@ -38,15 +38,16 @@ TEST(ContactSums, OfTwoSpheresPressedTogetherAreHertzsForceOnItsBranch) {
   const std::vector<ParticleState> now = engine->particles();
   const std::vector<ContactState> contacts = engine->contacts();
   ASSERT_EQ(contacts.size(), 1u);
-  const ContactSums sums = contact_sums(now, contacts);
+  const ContactSums sums = contact_sums(now, *engine);
   const double stiff = 1e8 / (2 * (1 - 0.25 * 0.25)), d = contacts[0].overlap;
   const double hertz = 4.0 / 3 * stiff * std::sqrt(kRadius / 2) * std::pow(d, 1.5);
   for (size_t k = 0; k < 2; ++k) {
     const double side = now[k].position.x > 0.5 * distance ? 1 : -1;
     EXPECT_NEAR(sums.force[k].x, side * hertz, 0.02 * hertz);  // damping, too: they move apart by now
     EXPECT_NEAR(sums.force[k].x, side * norm(contacts[0].force), 1e-15);
-    EXPECT_NEAR(sums.stress[k][0], norm(contacts[0].force) * (kRadius - 0.5 * d) / volume(kRadius), 1e-9);
-    for (int i = 1; i < 9; ++i) EXPECT_NEAR(sums.stress[k][i], 0, 1e-9);
+    EXPECT_NEAR(sums.stress[k][0], norm(contacts[0].force) * (kRadius - 0.5 * d) / volume(kRadius),
+                1e-6 * sums.stress[k][0]);
+    for (int i = 1; i < 6; ++i) EXPECT_NEAR(sums.stress[k][i], 0, 1e-9);
     EXPECT_EQ(sums.coordination[k], 1);
     EXPECT_EQ(sums.wall_contacts[k], 0);
   }
@@ -62,7 +63,7 @@ TEST(ContactSums, OfAPairAcrossAPeriodicFaceAreTheSame) {
   engine->step();
   const std::vector<ContactState> contacts = engine->contacts();
   ASSERT_EQ(contacts.size(), 1u);
-  const ContactSums sums = contact_sums(engine->particles(), contacts);
+  const ContactSums sums = contact_sums(engine->particles(), *engine);
   const double expected = norm(contacts[0].force) * (kRadius - 0.5 * contacts[0].overlap) / volume(kRadius);
   for (size_t k = 0; k < 2; ++k) EXPECT_NEAR(sums.stress[k][0], expected, 1e-6 * expected);
 }
@@ -73,26 +74,27 @@ TEST(ContactSums, OfAPairAcrossAPeriodicFaceAreTheSame) {
 TEST(ContactSums, StressOfARestingColumnCarriesTheWeightAbove) {
   for (const Precision precision : {Precision::reference, Precision::mixed}) {
     Case c = glass_case(precision);
+    c.time.step = 4e-6;
     c.gravity = {0, 0, -9.81};
     add_solid(c, floor_at(0, 0.01, 0));
     std::vector<ParticleState> column;
     for (int k = 0; k < 6; ++k) column.push_back(sphere(c, 0, {0, 0, kRadius * (1 + 2 * k)}));
     const auto engine = make_engine(c);
     engine->insert(column);
-    for (int k = 0; k < 60000; ++k) engine->step();
+    for (int k = 0; k < 20000; ++k) engine->step();
     std::vector<ParticleState> now = engine->particles();
-    const ContactSums sums = contact_sums(now, engine->contacts());
+    const ContactSums sums = contact_sums(now, *engine);
     const double weight = now[0].mass * 9.81;
     double total = 0, moment = 0;
     for (size_t k = 0; k < now.size(); ++k) {
       const double above = weight * static_cast<double>(5 - now[k].id), area = pi * kRadius * kRadius;
       SCOPED_TRACE(now[k].id);
       EXPECT_NEAR(sums.force[k].z, weight, 0.01 * weight);
-      EXPECT_NEAR(sums.stress[k][8], 1.5 * (above + 0.5 * weight) / area, 0.01 * (above + weight) / area);
+      EXPECT_NEAR(sums.stress[k][2], 1.5 * (above + 0.5 * weight) / area, 0.01 * (above + weight) / area);
       EXPECT_NEAR(sums.stress[k][0], 0, 1e-6 * weight / area);
       EXPECT_EQ(sums.wall_contacts[k], now[k].id == 0 ? 1 : 0);
       EXPECT_EQ(sums.coordination[k], now[k].id == 0 || now[k].id == 5 ? 1 : 2);
-      total += volume(kRadius) * sums.stress[k][8], moment += weight * now[k].position.z;
+      total += volume(kRadius) * sums.stress[k][2], moment += weight * now[k].position.z;
     }
     EXPECT_NEAR(total, moment, 0.005 * moment);
   }
@@ -100,17 +102,18 @@ TEST(ContactSums, StressOfARestingColumnCarriesTheWeightAbove) {
 
 TEST(ContactSums, CoordinationCountsTouchingPairs) {
   Case c = glass_case(Precision::mixed);
+  c.time.step = 5e-6, c.pairs[0].sliding_friction = 0.5;
   c.gravity = {0, 0, -9.81};
   add_solid(c, floor_at(0, 0.05, 0));
   std::vector<ParticleState> grains;
   for (int k = 0; k < 125; ++k)
-    grains.push_back(sphere(c, 0, {0.0021 * (k % 5) + 0.0001 * (k % 7), 0.0021 * (k / 5 % 5) + 0.0001 * (k % 3),
-                                   0.0011 + 0.0021 * (k / 25)}));
+    grains.push_back(sphere(
+        c, 0, {0.0021 * (k % 5) + 1e-5 * (k % 7), 0.0021 * (k / 5 % 5) + 1e-5 * (k % 3), 0.0011 + 0.0021 * (k / 25)}));
   const auto engine = make_engine(c);
   engine->insert(grains);
   for (int k = 0; k < 15000; ++k) engine->step();
   const std::vector<ParticleState> now = engine->particles();
-  const ContactSums sums = contact_sums(now, engine->contacts());
+  const ContactSums sums = contact_sums(now, *engine);
   std::map<uint64_t, int> expected;
   for (const Engine::TouchingPair& pair : engine->touching_pairs()) ++expected[pair.i], ++expected[pair.j];
   int all = 0;
@@ -118,7 +121,7 @@ TEST(ContactSums, CoordinationCountsTouchingPairs) {
     EXPECT_EQ(sums.coordination[k], expected[now[k].id]) << now[k].id;
     all += sums.coordination[k];
   }
-  EXPECT_GT(all, 100);
+  EXPECT_GT(all, 30);
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ Case heap_case(Precision precision = Precision::mixed) {
 std::vector<ParticleState> heap(const Case& c) {
   std::vector<ParticleState> grains;
   for (int k = 0; k < 27; ++k)
-    grains.push_back(sphere(c, k % 2, {0.0026 * (k % 3) - 0.003, 0.0026 * (k / 3 % 3) + 0.002, 0.0016 + 0.0027 * (k / 9)},
+    grains.push_back(sphere(c, k % 2,
+                            {0.0026 * (k % 3) - 0.003, 0.0026 * (k / 3 % 3) + 0.002, 0.0016 + 0.0027 * (k / 9)},
                             {0.01 * k, 0, -0.1}, {1.0 * k, 2, 3}));
   return grains;
 }
@@ -79,6 +80,7 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
   std::vector<ParticleState> grains = heap(s.c);
   s.engine->insert(std::span(grains).first(20));
   for (int k = 0; k < 900; ++k) s.engine->step();
+  for (ParticleState& late : std::span(grains).subspan(20)) late.position.z += 0.01;
   s.engine->insert(std::span(grains).subspan(20));
   for (int k = 0; k < 900; ++k) s.engine->step();
   fields.look(s.view());
@@ -91,13 +93,15 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
   EXPECT_NEAR(d.array("field_data", "time").values.at(0), s.engine->time(), 1e-15);
 
   const std::vector<ParticleState> particles = s.engine->particles();
-  const ContactSums sums = contact_sums(particles, s.engine->contacts());
+  const ContactSums sums = contact_sums(particles, *s.engine);
   const auto field = [&](const char* name) { return by_id(d, d.array("point_data", name)); };
   const auto position = by_id(d, d.points), velocity = field("velocity"), spin = field("angular_velocity"),
              force = field("force"), stress = field("contact_stress"), radius = field("radius"), kind = field("kind"),
              coordination = field("coordination"), walls = field("wall_contacts"), age = field("age");
   const auto expect_vector = [](const std::vector<double>& found, const Vec3& wanted) {
-    EXPECT_EQ(found, (std::vector<double>{float(wanted.x), float(wanted.y), float(wanted.z)}));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.at(0)), static_cast<float>(wanted.x));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.at(1)), static_cast<float>(wanted.y));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.at(2)), static_cast<float>(wanted.z));
   };
   int touching = 0;
   for (size_t k = 0; k < particles.size(); ++k) {
@@ -111,7 +115,7 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
     EXPECT_EQ(kind.at(p.id)[0], p.kind);
     EXPECT_EQ(coordination.at(p.id)[0], sums.coordination[k]);
     EXPECT_EQ(walls.at(p.id)[0], sums.wall_contacts[k]);
-    for (int i = 0; i < 9; ++i) EXPECT_EQ(stress.at(p.id)[i], float(sums.stress[k][i]));
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(stress.at(p.id)[i], sums.stress[k][i]);
     EXPECT_NEAR(age.at(p.id)[0], p.id < 20 ? 0.018 : 0.009, 1e-8);
     touching += sums.coordination[k] + sums.wall_contacts[k];
   }
@@ -227,7 +231,8 @@ TEST(FieldFiles, OnlyNamedFieldsAreWritten) {
   fields.look(s.view());
   fields.finish(s.view());
   Hdf5Reader file(frame_path(s, "particles"));
-  for (const char* name : {"age", "id", "radius", "kind"}) EXPECT_TRUE(file.has(std::string("VTKHDF/PointData/") + name));
+  for (const char* name : {"age", "id", "radius", "kind"})
+    EXPECT_TRUE(file.has(std::string("VTKHDF/PointData/") + name));
   for (const char* name : {"velocity", "force"}) EXPECT_FALSE(file.has(std::string("VTKHDF/PointData/") + name));
 }
 

@@ -21,7 +21,7 @@ constexpr double kGravity = 9.81;
 
 // A layer from z = 0.2 to z = 0.1 m; nothing touches anything.
 Case falling_case() {
-  Case c = empty_case(1e-4);
+  Case c = empty_case(2e-5);
   add_material(c, {"grain", 2500, 1e6, 0.3});
   c.pairs = {{0, 0, 0.5, 0.5, 0}};
   add_kind(c, 0, 0.001), add_kind(c, 0, 0.002);
@@ -30,8 +30,8 @@ Case falling_case() {
   return c;
 }
 
-struct Run {
-  explicit Run(const Case& c) : c(c), engine(make_engine(c)), residence(c, engine->dt()) {}
+struct Fall {
+  explicit Fall(const Case& c) : c(c), engine(make_engine(c)), residence(c, engine->dt()) {}
   void until(double time) {
     while (engine->time() < time) {
       engine->step();
@@ -58,7 +58,7 @@ double fall_time(double height) { return std::sqrt(2 * height / kGravity); }
 
 // From rest at h the layer takes sqrt(2 (h - 0.1) / g) - sqrt(2 (h - 0.2) / g).
 TEST(Residence, OfFreelyFallingGrainsIsTheClosedForm) {
-  Run run(falling_case());
+  Fall run(falling_case());
   std::vector<ParticleState> grains;
   std::vector<double> expected;
   for (int k = 0; k < 20; ++k) {
@@ -108,7 +108,7 @@ TEST(Residence, BinsHoldAllMassAndAreAsWideAsAsked) {
 TEST(Residence, CountsOnlyWhatEntersWhileTheDrainIsOpen) {
   Case c = falling_case();
   c.stages = {{"hold", SettleStage{}}, {"empty", DrainStage{}}};
-  Run run(c);
+  Fall run(c);
   const std::vector<ParticleState> grains = {sphere(c, 0, {0, 0, 0.15}), sphere(c, 0, {0.01, 0, 0.201}),
                                              sphere(c, 1, {0.02, 0, 0.3})};
   run.engine->insert(grains);
@@ -127,7 +127,7 @@ TEST(Residence, CountsOnlyWhatEntersWhileTheDrainIsOpen) {
 TEST(Residence, OfAGrainThatIsTakenOutEndsThere) {
   Case c = falling_case();
   c.output.residence.interval = 5e-3;
-  Run run(c);
+  Fall run(c);
   run.engine->set_removal([](const ParticleState& p) { return p.position.z < 0.12 ? 0 : -1; });
   const ParticleState grain = sphere(c, 0, {0, 0, 0.25});
   run.engine->insert({&grain, 1});
@@ -144,7 +144,7 @@ TEST(Residence, GoesOnFromACheckpointAsIfNothingHadHappened) {
   const Case c = falling_case();
   std::vector<ParticleState> grains;
   for (int k = 0; k < 5; ++k) grains.push_back(sphere(c, 0, {0.01 * k, 0, 0.22 + 0.02 * k}));
-  Run whole(c), first(c), second(c);
+  Fall whole(c), first(c), second(c);
   whole.engine->insert(grains), first.engine->insert(grains);
   whole.until(0.4);
   first.until(0.1203);
@@ -169,7 +169,7 @@ TEST(Residence, WritesWhatIsLeftAtEachJunction) {
   const OctetLattice lattice = octet_lattice(0.04, {1, 1, 2}, {0, 0, 0.1});
   add_solid(c, fibre_primitives(lattice, 0.002, {0, 0}));
   c.output.residence.entry = 0.18;
-  Run run(c);
+  Fall run(c);
   const Vec3 junction{0.02, 0.02, 0.14};  // centre of the face between the two cells
   const std::vector<ParticleState> grains = {sphere(c, 0, junction + Vec3{0, 0, 0.004}),
                                              sphere(c, 1, junction + Vec3{0.004, -0.004, 0.0045}),
