@@ -17,7 +17,7 @@ void write_field(VtkHdfFile& file, const CoarseGrid& grid, const std::string& na
   std::vector<float> values(grid.size() * components);
   for (size_t k = 0; k < grid.size(); ++k)
     for (uint64_t n = 0; n < components; ++n) values[k * components + n] = static_cast<float>(get(k, n));
-  file.image("CellData/" + name, values, grid.cells, components);
+  file.image("PointData/" + name, values, grid.cells, components);
 }
 
 double part(const Vec3& v, uint64_t n) { return n == 0 ? v.x : n == 1 ? v.y : v.z; }
@@ -26,8 +26,9 @@ double part(const Vec3& v, uint64_t n) { return n == 0 ? v.x : n == 1 ? v.y : v.
 
 void write_average_vtkhdf(const std::filesystem::path& path, const CoarseGrid& grid, const AverageFields& f) {
   write_vtkhdf(path, VtkHdfType::image_data, [&](VtkHdfFile& file) {
-    const int64_t extent[] = {0, grid.cells[0], 0, grid.cells[1], 0, grid.cells[2]};
-    const double origin[] = {grid.origin.x, grid.origin.y, grid.origin.z};
+    const int64_t extent[] = {0, grid.cells[0] - 1, 0, grid.cells[1] - 1, 0, grid.cells[2] - 1};
+    const Vec3 first = grid.centre(0);
+    const double origin[] = {first.x, first.y, first.z};
     const double spacing[] = {grid.spacing.x, grid.spacing.y, grid.spacing.z};
     const double direction[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     file.attribute("WholeExtent", extent);

@@ -11,5 +11,6 @@ namespace scree {
 CoarseGrid grid_of(const AverageSettings& average, const Case& c);
 
 double memory_of_average(const AverageSettings& average);  // bytes, while the run goes on and its files are written
+inline constexpr double kAverageBytesPerParticle = 240;    // while it looks
 
 }  // namespace scree

@@ -116,7 +116,8 @@ double memory_of_primitives(double count) { return count * kBytesPerPrimitive; }
 
 double memory_needed(const Case& c) {
   const double per_particle = (writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0) +
-                              (c.output.residence.enabled ? kResidenceBytesPerParticle : 0);
+                              (c.output.residence.enabled ? kResidenceBytesPerParticle : 0) +
+                              (c.output.averages.empty() ? 0 : kAverageBytesPerParticle);
   double bytes = kFixedBytes + memory_of_particles(c, expected_particles(c)) + per_particle * expected_particles(c) +
                  memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
   for (const AverageSettings& average : c.output.averages) bytes += memory_of_average(average);

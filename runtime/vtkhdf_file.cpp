@@ -105,9 +105,9 @@ void VtkHdfFile::array(const std::string& name, const ElementType& type, const v
   blocks(name, type, values, std::span(size).first(components ? 2 : 1), (rows + pieces - 1) / pieces);
 }
 
-void VtkHdfFile::image(const std::string& name, std::span<const float> values, const std::array<int, 3>& cells,
+void VtkHdfFile::image(const std::string& name, std::span<const float> values, const std::array<int, 3>& points,
                        uint64_t components) {
-  const uint64_t size[] = {uint64_t(cells[2]), uint64_t(cells[1]), uint64_t(cells[0]), components};
+  const uint64_t size[] = {uint64_t(points[2]), uint64_t(points[1]), uint64_t(points[0]), components};
   const uint64_t layers = std::max<uint64_t>(1, kPieceRows / (size[1] * size[2]));
   blocks(name, element_type<float>(), values.data(), std::span(size).first(components > 1 ? 4 : 3),
          std::min(layers, size[0]));

@@ -39,8 +39,8 @@ class VtkHdfFile {
   }
   void array(const std::string& name, const ElementType& type, const void* values, uint64_t count, uint64_t components);
 
-  // Cell data of an image: a value (components 1) or a row of values for each cell, x fastest.
-  void image(const std::string& name, std::span<const float> values, const std::array<int, 3>& cells,
+  // Point data of an image: a value (components 1) or a row of values for each point, x fastest.
+  void image(const std::string& name, std::span<const float> values, const std::array<int, 3>& points,
              uint64_t components);
 
   void close();

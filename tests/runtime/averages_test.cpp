@@ -198,9 +198,8 @@ TEST(Averages, AreReadByVtkAsTheyAre) {
   write_average_vtkhdf(folder.path("a.vtkhdf"), sums.grid(), f);
   const VtkData d = read_with_vtk({folder.path("a.vtkhdf")}).at(0);
   EXPECT_EQ(d.class_name, "vtkImageData");
-  EXPECT_EQ(d.cells.size(), sums.grid().size());
-  const VtkArray density = d.array("cell_data", "bulk_density"), flux = d.array("cell_data", "mass_flux"),
-                 stress = d.array("cell_data", "stress");
+  const VtkArray density = d.array("point_data", "bulk_density"), flux = d.array("point_data", "mass_flux"),
+                 stress = d.array("point_data", "stress");
   ASSERT_EQ(density.values.size(), sums.grid().size());
   ASSERT_EQ(flux.components, 3u);
   ASSERT_EQ(stress.components, 6u);
