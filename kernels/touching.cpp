@@ -26,24 +26,6 @@ void apply_law(const ChunkTask<Real>& task, const Contact<Real>& c, const PairCo
 }
 
 template <class Real>
-void visit_pairs(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts, const auto& visit) {
-  using L = ScalarLanes<Real>;
-  for (uint32_t k = 0; k < contacts.pairs; ++k) {
-    const PairBlock<Real>& block = contacts.blocks[k / kBlock];
-    const int lane = static_cast<int>(k % kBlock);
-    const PairGeometry<L> g = pair_lanes<L, true>(task, block, lane);
-    if (!(g.contact.overlap > 0)) continue;
-    TouchingContact seen{.i = contacts.pair_i(k), .j = contacts.pair_j(k)};
-    apply_law(task, g.contact,
-              pair_constants_of<L, PassTraits<RollingModel::none, false>>(task, block.i + lane, block.j + lane),
-              load_history<L>(block.history[0] + lane), seen);
-    const Particle<Real>& i = task.old_particles[seen.i];
-    seen.point = Vec<double>{i.x, i.y, i.z} - static_cast<double>(g.arm_i) * seen.normal;
-    visit(seen);
-  }
-}
-
-template <class Real>
 void visit_solids_of(const ChunkTask<Real>& task, const SolidBlock& block, const SolidSlot<Real>* slots, int lane,
                      const auto& visit) {
   using L = ScalarLanes<Real>;
@@ -65,17 +47,35 @@ void visit_solids_of(const ChunkTask<Real>& task, const SolidBlock& block, const
 }  // namespace
 
 template <class Real>
-void visit_touching(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts,
-                    const std::function<void(const TouchingContact&)>& visit) {
-  visit_pairs(task, contacts, visit);
+void visit_touching_pairs(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts,
+                          const VisitTouching& visit) {
+  using L = ScalarLanes<Real>;
+  for (uint32_t k = 0; k < contacts.pairs; ++k) {
+    const PairBlock<Real>& block = contacts.blocks[k / kBlock];
+    const int lane = static_cast<int>(k % kBlock);
+    const PairGeometry<L> g = pair_lanes<L, true>(task, block, lane);
+    if (!(g.contact.overlap > 0)) continue;
+    TouchingContact seen{.i = contacts.pair_i(k), .j = contacts.pair_j(k)};
+    apply_law(task, g.contact,
+              pair_constants_of<L, PassTraits<RollingModel::none, false>>(task, block.i + lane, block.j + lane),
+              load_history<L>(block.history[0] + lane), seen);
+    const Particle<Real>& i = task.old_particles[seen.i];
+    seen.point = Vec<double>{i.x, i.y, i.z} - static_cast<double>(g.arm_i) * seen.normal;
+    visit(seen);
+  }
+}
+
+template <class Real>
+void visit_touching_solids(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts,
+                           const VisitTouching& visit) {
   for (const SolidBlock& block : contacts.solid_blocks)
     for (int lane = 0; lane < kBlock; ++lane)
       visit_solids_of(task, block, contacts.slots.data() + block.first_slot, lane, visit);
 }
 
-template void visit_touching(const ChunkTask<float>&, const ChunkContacts<float>&,
-                             const std::function<void(const TouchingContact&)>&);
-template void visit_touching(const ChunkTask<double>&, const ChunkContacts<double>&,
-                             const std::function<void(const TouchingContact&)>&);
+template void visit_touching_pairs(const ChunkTask<float>&, const ChunkContacts<float>&, const VisitTouching&);
+template void visit_touching_pairs(const ChunkTask<double>&, const ChunkContacts<double>&, const VisitTouching&);
+template void visit_touching_solids(const ChunkTask<float>&, const ChunkContacts<float>&, const VisitTouching&);
+template void visit_touching_solids(const ChunkTask<double>&, const ChunkContacts<double>&, const VisitTouching&);
 
 }  // namespace scree

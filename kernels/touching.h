@@ -22,15 +22,20 @@ struct TouchingContact {
   double elastic_energy = 0;  // J, of the normal spring: 2/5 of its force times the overlap (Hertz)
 };
 
-// Visits the contacts in the task's lists (a pair across two chunks is in both). task.new_particles, task.rows and
+using VisitTouching = std::function<void(const TouchingContact&)>;
+
+// Visit the contacts in the task's lists (a pair across two chunks is in both). task.new_particles, task.rows and
 // task.contacts are not used.
 template <class Real>
-void visit_touching(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts,
-                    const std::function<void(const TouchingContact&)>& visit);
+void visit_touching_pairs(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts, const VisitTouching& visit);
+template <class Real>
+void visit_touching_solids(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts,
+                           const VisitTouching& visit);
 
-extern template void visit_touching(const ChunkTask<float>&, const ChunkContacts<float>&,
-                                    const std::function<void(const TouchingContact&)>&);
-extern template void visit_touching(const ChunkTask<double>&, const ChunkContacts<double>&,
-                                    const std::function<void(const TouchingContact&)>&);
+extern template void visit_touching_pairs(const ChunkTask<float>&, const ChunkContacts<float>&, const VisitTouching&);
+extern template void visit_touching_pairs(const ChunkTask<double>&, const ChunkContacts<double>&, const VisitTouching&);
+extern template void visit_touching_solids(const ChunkTask<float>&, const ChunkContacts<float>&, const VisitTouching&);
+extern template void visit_touching_solids(const ChunkTask<double>&, const ChunkContacts<double>&,
+                                           const VisitTouching&);
 
 }  // namespace scree

@@ -132,6 +132,28 @@ struct Meter {
   Vec3 min{}, max{};
 };
 
+enum class During { always, drain, steady };  // a drain stage; output.steady_window of it
+
+// Fields on a grid, averaged over what is looked at: runtime/averages.h.
+struct AverageSettings {
+  std::string name;
+  Bounds box{};
+  double spacing = 0;  // m, edge of a cell, about: whole cells fill the box
+  double width = 0;    // m, half-width of the kernel
+  During during = During::drain;
+  Moments moments;
+};
+
+// Which parts of fibres and walls are touched: runtime/touch_maps.h.
+struct TouchSettings {
+  bool enabled = false;
+  double cell = 0;              // m, edge of a cell, about
+  uint64_t around = 12;         // cells round a fibre
+  std::vector<uint32_t> walls;  // index into Solid::walls: plane walls that have a map
+  During during = During::drain;
+  Moments moments;
+};
+
 // [output.fields]: field files for ParaView (runtime/field_files.h).
 struct FieldSettings {
   Moments moments;                 // none: nothing is written
@@ -154,6 +176,8 @@ struct OutputSettings {
   bool final_vtk = true;
   bool energy_ledger = false;        // where the energy goes, in summary.json
   std::vector<RunPicture> pictures;  // runtime/render/run_pictures.h
+  std::vector<AverageSettings> averages;
+  TouchSettings touch;
   FieldSettings fields;
   ResidenceSettings residence;
 };

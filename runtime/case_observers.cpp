@@ -1,4 +1,4 @@
-// [output.fields] and [output.residence]: what is written while the run goes on.
+// What is under [output]: [output.fields] and [output.residence] here, averages and touch maps in case_averages.cpp.
 #include <algorithm>
 #include <cmath>
 
@@ -61,6 +61,8 @@ void read_observers(TableReader& top, Case& c) {
   TableReader output = top.table("output");
   read_fields(output.table("fields"), c);
   read_residence(output.table("residence"), c);
+  read_averages(output, c);
+  read_touch(output, c);
 }
 
 }  // namespace scree

@@ -86,7 +86,8 @@ void read_output(TableReader t, OutputSettings& output) {
     output.steady_to = window[1];
   }
   read_pictures(t, output.pictures);
-  for (const char* later : {"fields", "residence"}) t.has(later);  // read_observers(), when the rest is known
+  for (const char* later : {"fields", "residence", "default_average", "average", "touch"})
+    t.has(later);  // read_observers(), when the rest is known
   t.finish();
 }
 

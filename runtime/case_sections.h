@@ -17,7 +17,11 @@ void read_solid(TableReader& top, Case& c);      // [lattice], [[fibres]], [[wal
 void read_pairs(TableReader& top, Case& c);      // [[pair]]: all that can touch
 void read_time(TableReader& top, Case& c);       // [time]
 void read_stages(TableReader& top, Case& c);     // [[stage]]
-void read_observers(TableReader& top, Case& c);  // [output.fields], [output.residence]
+void read_observers(TableReader& top, Case& c);  // what is under [output]
+
+// What read_observers() calls; they need the lattice, the stages and the time step.
+void read_averages(TableReader& output, Case& c);  // [[output.average]]
+void read_touch(TableReader& output, Case& c);     // [output.touch]
 
 // [domain], once the bounds of all static things are known (planes apart, which are cut to the domain).
 void read_domain(TableReader& top, Case& c, const Bounds& things);

@@ -289,6 +289,13 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   return result;
 }
 
+TableReader TableReader::added_table(const std::string& key) {
+  if (!has(key)) set_default(key, {CaseNode::Array{}, {}, {}}, "");
+  CaseNode::Array& all = *require(key).array();
+  all.push_back({CaseNode::Table{}, node_->place, {}});
+  return TableReader(all.back(), full_key(key));
+}
+
 std::pair<std::vector<std::string>, std::vector<double>> TableReader::weights(const std::string& key) {
   CaseNode& node = require(key);
   if (!node.table()) fail_type(key, node, "a table {name = fraction, ...}");

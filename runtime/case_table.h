@@ -78,6 +78,7 @@ class TableReader {
 
   TableReader table(const std::string& key);                // made if it is not there
   std::vector<TableReader> tables(const std::string& key);  // the elements of [[key]]; none if it is not there
+  TableReader added_table(const std::string& key);          // a default one more under [[key]]
   std::pair<std::vector<std::string>, std::vector<double>> weights(const std::string& key);  // {name = number, ...}
 
   // Exactly one of these keys must be there; returns it.

@@ -267,7 +267,7 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
 }
 
 template <class Real>
-void Domain<Real>::visit_contacts(const SeeContacts& see) const {
+void Domain<Real>::visit_contacts(const SeeContacts& see, Contacts which) const {
   if (!lists_valid_) return;
   constexpr size_t kAtOnce = 64;  // chunks
   std::vector<std::vector<ContactState>> found(std::min(kAtOnce, contacts_.size()));
@@ -276,21 +276,25 @@ void Domain<Real>::visit_contacts(const SeeContacts& see) const {
     parallel_for(last - first, [&](size_t k) {
       const size_t c = first + k;
       found[k].clear();
-      visit_touching<Real>(chunk_task(c, nullptr), contacts_[c], [&](const TouchingContact& t) {
+      const auto add = [&](const TouchingContact& t) {
         const bool solid = t.skeleton >= 0;
         if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
         found[k].push_back({t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point,
                             t.force, t.slip, t.elastic_energy});
-      });
+      };
+      const ChunkTask<Real> task = chunk_task(c, nullptr);
+      if (which == Contacts::all) visit_touching_pairs<Real>(task, contacts_[c], add);
+      visit_touching_solids<Real>(task, contacts_[c], add);
     });
     for (size_t k = 0; k < last - first; ++k) see(found[k]);
   }
 }
 
 template <class Real>
-std::vector<ContactState> Domain<Real>::contacts() const {
+std::vector<ContactState> Domain<Real>::contacts(Contacts which) const {
   std::vector<ContactState> result;
-  visit_contacts([&](std::span<const ContactState> part) { result.insert(result.end(), part.begin(), part.end()); });
+  visit_contacts([&](std::span<const ContactState> part) { result.insert(result.end(), part.begin(), part.end()); },
+                 which);
   return result;
 }
 

@@ -47,8 +47,8 @@ class Domain final : public Engine {
   std::vector<ParticleState> particles() const override;
   uint64_t state_hash() const override;
   std::vector<TouchingPair> touching_pairs() const override;
-  std::vector<ContactState> contacts() const override;
-  void visit_contacts(const SeeContacts& see) const override;
+  std::vector<ContactState> contacts(Contacts which) const override;
+  void visit_contacts(const SeeContacts& see, Contacts which) const override;
   bool knows_contacts() const override { return lists_valid_; }
   const std::vector<Insertion>& insertions() const override { return insertions_; }
 

@@ -155,12 +155,14 @@ class Engine {
   virtual std::vector<TouchingPair> touching_pairs() const = 0;
 
   // Every contact that touches now, each once, with the force that the next step will apply; nothing between an
-  // insertion or opening of walls and the next step. The same list for any number of threads.
-  virtual std::vector<ContactState> contacts() const = 0;
+  // insertion or opening of walls and the next step. The same list for any number of threads. Those with solids alone
+  // cost a fraction of all.
+  enum class Contacts { all, with_solids };
+  virtual std::vector<ContactState> contacts(Contacts which = Contacts::all) const = 0;
   virtual bool knows_contacts() const = 0;  // false: between those
   // The same list in pieces, so that not all of it is in memory at once (128 B each, some three a particle).
   using SeeContacts = std::function<void(std::span<const ContactState>)>;
-  virtual void visit_contacts(const SeeContacts& see) const = 0;
+  virtual void visit_contacts(const SeeContacts& see, Contacts which = Contacts::all) const = 0;
 
   virtual const std::vector<Insertion>& insertions() const = 0;  // ascending
 };

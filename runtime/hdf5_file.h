@@ -1,5 +1,6 @@
 // Named arrays in an HDF5 file, written and read front to back in pieces. Several threads may use files of their own at
-// once (runtime/hdf5_handle.h). Data lie contiguous and uncompressed; the first kHeaderBytes of the file are left to others (runtime/seal.h).
+// once (runtime/hdf5_handle.h). Data lie contiguous and uncompressed; the first kHeaderBytes of the file are left to
+// others (runtime/seal.h).
 #pragma once
 
 #include <cstdint>

@@ -9,9 +9,11 @@
 #include <optional>
 #include <sstream>
 
+#include "runtime/average_grid.h"
 #include "runtime/case_size.h"
 #include "runtime/field_files.h"
 #include "runtime/residence.h"
+#include "runtime/touch_surface.h"
 
 namespace scree {
 
@@ -113,10 +115,14 @@ double memory_of_particles(const Case& c, double count) {
 double memory_of_primitives(double count) { return count * kBytesPerPrimitive; }
 
 double memory_needed(const Case& c) {
-  const double observers = (writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0) +
-                           (c.output.residence.enabled ? kResidenceBytesPerParticle : 0);
-  return kFixedBytes + memory_of_particles(c, expected_particles(c)) + observers * expected_particles(c) +
-         memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
+  const double per_particle = (writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0) +
+                              (c.output.residence.enabled ? kResidenceBytesPerParticle : 0) +
+                              (c.output.averages.empty() ? 0 : kAverageBytesPerParticle);
+  double bytes = kFixedBytes + memory_of_particles(c, expected_particles(c)) + per_particle * expected_particles(c) +
+                 memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
+  for (const AverageSettings& average : c.output.averages) bytes += memory_of_average(average);
+  if (c.output.touch.enabled) bytes += kBytesPerTouchCell * cells_of_touch(c);
+  return bytes;
 }
 
 std::string bytes_text(double bytes) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <numeric>
 
 #include "runtime/hdf5_handle.h"
@@ -96,31 +97,50 @@ void VtkHdfFile::attribute(const std::string& name, std::span<const double> valu
   state_->attribute(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.size(), values.data());
 }
 
-// The library is locked for its own calls, not while a piece is compressed.
 void VtkHdfFile::array(const std::string& name, const ElementType& type, const void* values, uint64_t count,
                        uint64_t components) {
   const uint64_t per_row = std::max<uint64_t>(components, 1), rows = count / per_row;
   const uint64_t pieces = std::max<uint64_t>(1, (rows + kPieceRows - 1) / kPieceRows);
-  const hsize_t size[] = {rows, per_row}, piece[] = {(rows + pieces - 1) / pieces, per_row};
+  const uint64_t size[] = {rows, per_row};
+  blocks(name, type, values, std::span(size).first(components ? 2 : 1), (rows + pieces - 1) / pieces);
+}
+
+void VtkHdfFile::image(const std::string& name, std::span<const float> values, const std::array<int, 3>& points,
+                       uint64_t components) {
+  const uint64_t size[] = {uint64_t(points[2]), uint64_t(points[1]), uint64_t(points[0]), components};
+  const uint64_t layers = std::max<uint64_t>(1, kPieceRows / (size[1] * size[2]));
+  blocks(name, element_type<float>(), values.data(), std::span(size).first(components > 1 ? 4 : 3),
+         std::min(layers, size[0]));
+}
+
+// The library is locked for its own calls, not while a piece is compressed.
+void VtkHdfFile::blocks(const std::string& name, const ElementType& type, const void* values,
+                        std::span<const uint64_t> size, uint64_t piece_rows) {
+  const int rank = static_cast<int>(size.size());
+  std::vector<hsize_t> whole(size.begin(), size.end()), piece = whole;
+  piece[0] = piece_rows;
+  const uint64_t rows = size[0];
+  const uint64_t per_row = std::accumulate(size.begin() + 1, size.end(), uint64_t{1}, std::multiplies<>());
   Handle set;
   {
     const Hdf5Lock lock;
-    set = state_->make(name, type, components ? 2 : 1, size, piece);
+    set = state_->make(name, type, rank, whole.data(), piece.data());
   }
   const auto* data = static_cast<const unsigned char*>(values);
   std::vector<unsigned char> padded;
-  const uint64_t piece_elements = piece[0] * per_row;
-  for (uint64_t row = 0; row < rows; row += piece[0]) {
+  std::vector<hsize_t> at(size.size(), 0);
+  const uint64_t piece_elements = piece_rows * per_row;
+  for (uint64_t row = 0; row < rows; row += piece_rows) {
     const unsigned char* from = data + row * per_row * type.size;
-    if (rows - row < piece[0]) {  // the last piece is a whole one, too
+    if (rows - row < piece_rows) {  // the last piece is a whole one, too
       padded.assign(piece_elements * type.size, 0);
       std::memcpy(padded.data(), from, (rows - row) * per_row * type.size);
       from = padded.data();
     }
     const std::span<const unsigned char> packed = state_->compressor.pack(from, piece_elements, type.size);
     const Hdf5Lock lock;
-    const hsize_t at[] = {row, 0};
-    checked(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at, packed.size(), packed.data()), name);
+    at[0] = row;
+    checked(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), packed.size(), packed.data()), name);
   }
   const Hdf5Lock lock;
   set.close();

@@ -39,10 +39,17 @@ class VtkHdfFile {
   }
   void array(const std::string& name, const ElementType& type, const void* values, uint64_t count, uint64_t components);
 
+  // Point data of an image: a value (components 1) or a row of values for each point, x fastest.
+  void image(const std::string& name, std::span<const float> values, const std::array<int, 3>& points,
+             uint64_t components);
+
   void close();
 
  private:
   struct State;
+  // `size`: of the array, slowest first; the first is cut into pieces of `piece_rows`.
+  void blocks(const std::string& name, const ElementType& type, const void* values, std::span<const uint64_t> size,
+              uint64_t piece_rows);
   std::unique_ptr<State> state_;
 };
 

@@ -49,6 +49,12 @@ TEST(CaseDifference, IsAnotherWayToMeasureResidence) {
   EXPECT_NE(difference_by({"output.residence.interval=0.01"}).find("'output.residence.interval'"), std::string::npos);
 }
 
+// Sums over other cells or moments cannot go on.
+TEST(CaseDifference, IsAnotherWayToAverage) {
+  EXPECT_NE(difference_by({"output.touch.cell=1e-3"}).find("'output.touch.cell'"), std::string::npos);
+  EXPECT_NE(difference_by({"output.default_average=false"}).find("'output.default_average'"), std::string::npos);
+}
+
 TEST(CaseDifference, IsNoneForAnotherSpellingOfANumber) {
   EXPECT_EQ(case_difference("a = 3\n[b]\nc = 1\nd = 2\n", "a = 3.0  # default\n[b]\nd = 2\nc = 1\n"), std::nullopt);
 }

@@ -54,6 +54,12 @@ void describe_settings(const Case& c, Text& t) {
   t.row("checkpoint", c.checkpoint.interval, c.checkpoint.keep);
   t.row("output", c.output.interval, c.output.steady_from, c.output.steady_to, c.output.final_vtk,
         c.output.energy_ledger);
+  for (const AverageSettings& a : c.output.averages)
+    t.row("average", a.name, a.box, a.spacing, a.width, a.during, a.moments.interval, a.moments.times,
+          a.moments.stage_ends, a.moments.from, a.moments.to);
+  const TouchSettings& touch = c.output.touch;
+  t.row("touch", touch.enabled, touch.cell, touch.around, touch.walls, touch.during, touch.moments.interval,
+        touch.moments.times, touch.moments.stage_ends, touch.moments.from, touch.moments.to);
   const FieldSettings& f = c.output.fields;
   t.row("fields", f.moments.interval, f.moments.times, f.moments.stage_ends, f.moments.from, f.moments.to, f.write,
         f.solid);

@@ -37,7 +37,7 @@ def grid(path):
         cells.append([cell.GetCellType()] + [cell.GetPointId(i) for i in range(cell.GetNumberOfPoints())])
     return {
         "class": g.GetClassName(),
-        "points": numbers(g.GetPoints().GetData()) if g.GetPoints() else None,
+        "points": numbers(g.GetPoints().GetData()) if hasattr(g, "GetPoints") and g.GetPoints() else None,
         "cells": cells,
         "point_data": arrays(g.GetPointData()),
         "cell_data": arrays(g.GetCellData()),

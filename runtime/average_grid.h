@@ -1,0 +1,16 @@
+// The grid of an average, from its settings.
+#pragma once
+
+#include "kernels/coarse_grain.h"
+#include "runtime/case.h"
+
+namespace scree {
+
+// Whole cells that fill the box, edges as near to the spacing as that allows. It wraps along a periodic axis whose
+// period the box covers.
+CoarseGrid grid_of(const AverageSettings& average, const Case& c);
+
+double memory_of_average(const AverageSettings& average);  // bytes, while the run goes on and its files are written
+inline constexpr double kAverageBytesPerParticle = 240;    // while it looks
+
+}  // namespace scree
