@@ -53,7 +53,8 @@ void FrameFiles::prepare() {
       beyond.push_back(it->path());
   }
   for (const fs::path& path : beyond) fs::remove(path, error);
-  if (!frames_.empty()) write_series();
+  std::erase_if(written_, [&](const Frame& f) { return !fs::exists(path_of(f), error); });  // taken away since
+  if (!written_.empty()) write_series();
 }
 
 void FrameFiles::write(uint64_t step, double time, Fill fill) {
@@ -103,7 +104,7 @@ void FrameFiles::write_series() const {
 void FrameFiles::settle() {
   background_->finish();
   if (unforced_.empty()) return;
-  write_series();
+  if (!written_.empty()) write_series();
   for (const fs::path& path : unforced_)
     if (fs::exists(path)) force_to_disk(path);  // not there: it could not be written, and that was told
   sync_folder(folder_);

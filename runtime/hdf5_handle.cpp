@@ -10,14 +10,12 @@ std::recursive_mutex& library_mutex() {
 }
 
 // HDF5 must not clean up at exit: a file that a full disk kept from closing would be tried again, and can hang there.
+// Where the library was built for threads, each has its own way of reporting errors: ours throw and do not print.
 void prepare_library() {
-  static const bool prepared = [] {
-    H5dont_atexit();
-    H5open();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
-    return true;
-  }();
-  static_cast<void>(prepared);
+  static const bool opened = [] { return H5dont_atexit(), H5open() >= 0; }();
+  static_cast<void>(opened);
+  thread_local const bool silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  static_cast<void>(silent);
 }
 
 }  // namespace
