@@ -75,7 +75,7 @@ class Candidates {
 
  private:
   void reserve(size_t count) {
-    if (x.size() >= count) return;
+    if (wraps.size() >= count) return;  // the last to grow: no memory may have been left on the way
     count += count / 2 + 64;
     x.resize(count), y.resize(count), z.resize(count), radius.resize(count), index.resize(count);
     wraps.resize(count);

@@ -67,6 +67,7 @@ struct Hdf5Writer::State {
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
   const Hdf5Lock lock;
   State& s = *state_;
+  require_library_memory();
   const Handle creation = property_list(H5P_FILE_CREATE);
   checked(H5Pset_userblock(creation, kHeaderBytes), "");
   s.file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access_properties()), H5Fclose);
@@ -131,6 +132,18 @@ std::vector<Extent> Hdf5Writer::close() {
 
 // ---- reading
 
+namespace {
+
+constexpr uint64_t kDeflateExpands = 1032;  // at most: 258 bytes from two bits (RFC 1951)
+
+// Bytes of an array for each byte of the file; a claim beyond it is corrupt, and no memory is asked for it.
+uint64_t most_expansion(hid_t set) {
+  const Handle how(H5Dget_create_plist(set), H5Pclose);
+  return checked(H5Pget_nfilters(how), "") > 0 ? kDeflateExpands : 1;
+}
+
+}  // namespace
+
 struct Hdf5Reader::State {
   Handle file;
   OpenArray array;
@@ -152,6 +165,7 @@ struct Hdf5Reader::State {
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
   const Hdf5Lock lock;
+  require_library_memory();
   state_->file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access_properties()), H5Fclose);
 }
 
@@ -176,7 +190,7 @@ uint64_t Hdf5Reader::begin(const std::string& name, const ElementType& type) {
   const Handle stored(H5Dget_type(a.set), H5Tclose, name);
   if (H5Tequal(stored, a.type_id) <= 0) throw Hdf5Error(name + ": the elements are of another type");
   a.count = static_cast<uint64_t>(checked(H5Sget_simple_extent_npoints(a.space), name));
-  if (a.count > H5Dget_storage_size(a.set) / type.size)
+  if (a.count > H5Dget_storage_size(a.set) * most_expansion(a.set) / type.size)
     throw Hdf5Error(name + ": longer than what the file holds of it");
   s.array = std::move(a);
   s.buffer.clear(), s.used = 0;

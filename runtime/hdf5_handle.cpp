@@ -1,5 +1,8 @@
 #include "runtime/hdf5_handle.h"
 
+#include <cstdlib>
+#include <new>
+
 namespace scree {
 
 namespace {
@@ -36,6 +39,13 @@ std::string hdf5_reason() {
   if (begin == std::string::npos) return text;
   const size_t from = begin + quote.size();
   return text.substr(from, text.find('\'', from) - from);
+}
+
+void require_library_memory() {
+  constexpr size_t kWorkingMemory = 16 << 20;
+  void* volatile memory = std::malloc(kWorkingMemory);  // volatile: or the compiler leaves both calls out
+  if (!memory) throw std::bad_alloc();
+  std::free(memory);
 }
 
 Handle property_list(hid_t type) { return {H5Pcreate(type), H5Pclose}; }

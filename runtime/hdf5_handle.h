@@ -56,6 +56,10 @@ class Handle {
   Close close_ = nullptr;
 };
 
+// Before a file is opened: the library writes through null pointers where memory ends on the way (seen: H5AC_create of
+// 1.10). Throws std::bad_alloc where it has no room to work in.
+void require_library_memory();
+
 Handle property_list(hid_t type);
 Handle type_handle(const ElementType& type);
 

@@ -72,6 +72,7 @@ struct VtkHdfFile::State {
 VtkHdfFile::VtkHdfFile(const std::filesystem::path& path, VtkHdfType type) : state_(std::make_unique<State>()) {
   const Hdf5Lock lock;
   State& s = *state_;
+  require_library_memory();
   s.file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, unlocked_access()), H5Fclose);
   s.group = Handle(H5Gcreate2(s.file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   s.link_properties = property_list(H5P_LINK_CREATE);
