@@ -1,5 +1,5 @@
-// Averaged fields as files: FOLDER/NAME.vtkhdf and FOLDER/NAME_QUANTITY.png, slices through the middle of the box across
-// x and across y. Makes the folder. Throws RunError.
+// Averaged fields as files: FOLDER/NAME.vtkhdf and FOLDER/NAME_QUANTITY.png, slices through the middle of the box
+// across x and across y. Makes the folder. Throws RunError.
 //
 // The file is ImageData with a point in the middle of each cell: VTK 9.1 reads cell data of images as if there were as
 // many cells as points, and fails. A field's sum over the points times the product of the spacings is its integral.

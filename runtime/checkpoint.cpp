@@ -31,12 +31,11 @@ uint64_t checksum_of(const Solid& solid) {
 
 std::vector<fs::path> files_named(const fs::path& folder, const std::string& begin, const std::string& end) {
   std::vector<fs::path> found;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), last; !error && it != last; it.increment(error)) {
-    const std::string name = it->path().filename().string();
-    if (name.starts_with(begin) && name.ends_with(end)) found.push_back(it->path());
+  for (const fs::path& path : entries_of(folder)) {
+    const std::string name = path.filename().string();
+    if (name.starts_with(begin) && name.ends_with(end)) found.push_back(path);
   }
-  std::ranges::sort(found, std::greater{});
+  std::ranges::reverse(found);  // the newest first
   return found;
 }
 

@@ -44,15 +44,13 @@ fs::path FrameFiles::path_of(const Frame& frame) const {
 void FrameFiles::prepare() {
   if (std::exchange(prepared_, true)) return;
   written_ = frames_;
-  std::vector<fs::path> beyond;
   std::error_code error;
-  for (fs::directory_iterator it(folder_, error), last; !error && it != last; it.increment(error)) {
-    const std::string name = it->path().filename().string();
+  for (const fs::path& path : entries_of(folder_)) {
+    const std::string name = path.filename().string();
     if (!name.starts_with(stem_ + "_") || name.find(".vtkhdf") == std::string::npos) continue;
     if (std::ranges::none_of(frames_, [&](const Frame& f) { return path_of(f).filename() == name; }))
-      beyond.push_back(it->path());
+      fs::remove(path, error);
   }
-  for (const fs::path& path : beyond) fs::remove(path, error);
   std::erase_if(written_, [&](const Frame& f) { return !fs::exists(path_of(f), error); });  // taken away since
   if (!written_.empty()) write_series();
 }

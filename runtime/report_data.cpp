@@ -6,6 +6,7 @@
 
 #include "runtime/case_toml.h"
 #include "runtime/report_pictures.h"
+#include "runtime/run_folder.h"
 
 namespace scree {
 
@@ -68,13 +69,10 @@ bool is_shown(const std::string& stem) {
 
 ReportJson tables_of(const fs::path& folder) {
   ReportJson tables = ReportJson::object();
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (at->path().extension() == ".csv" && is_shown(at->path().stem().string())) files.push_back(at->path());
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files)
+  for (const fs::path& file : entries_of(folder)) {
+    if (file.extension() != ".csv" || !is_shown(file.stem().string())) continue;
     if (ReportJson table = csv_columns(file); !table.is_null()) tables[file.stem().string()] = std::move(table);
+  }
   return tables;
 }
 

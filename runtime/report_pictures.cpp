@@ -1,4 +1,5 @@
 #include "runtime/report_pictures.h"
+#include "runtime/run_folder.h"
 
 #include <algorithm>
 #include <fstream>
@@ -50,9 +51,8 @@ std::vector<fs::path> spread(const std::vector<fs::path>& files, size_t count) {
 std::vector<fs::path> png_files(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (at->path().extension() == ".png" && at->is_regular_file(error)) files.push_back(at->path());
-  std::sort(files.begin(), files.end());
+  for (const fs::path& path : entries_of(folder))
+    if (path.extension() == ".png" && fs::is_regular_file(path, error)) files.push_back(path);
   return files;
 }
 

@@ -1,11 +1,15 @@
 #include "runtime/run_folder.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -48,6 +52,15 @@ RunFolder::RunFolder(const std::filesystem::path& folder) {
 }
 
 RunFolder::~RunFolder() { ::close(descriptor_); }
+
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> found;
+  const std::unique_ptr<DIR, int (*)(DIR*)> open(opendir(folder.c_str()), closedir);
+  while (const dirent* entry = open ? readdir(open.get()) : nullptr)
+    if (const std::string_view name = entry->d_name; name != "." && name != "..") found.push_back(folder / name);
+  std::sort(found.begin(), found.end());
+  return found;
+}
 
 void sync_folder(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
