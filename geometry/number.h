@@ -1,7 +1,8 @@
 // The few operations that code templated on a number type T may use beyond + - * / and comparisons, for the scalars.
 // A SIMD type brings its own in its own namespace, found by argument-dependent lookup:
 //   min(a, b)   max(a, b)   abs(a)   sqrt(a)   fma(a, b, c) = a b + c rounded once   select(mask, a, b) = mask ? a : b
-//   round(a) to nearest, ties to even   any(mask): true in some lane
+//   fms = a b - c   nfma = c - a b   nfms = -a b - c, rounded once; from fma, unless the type has them as one
+//   instruction round(a) to nearest, ties to even   any(mask): true in some lane
 // A comparison of two T gives a mask (bool here); masks combine with & and |, never && and ||, and are held in `auto`.
 #pragma once
 
@@ -26,5 +27,18 @@ inline float abs(float a) { return std::fabs(a); }
 inline float sqrt(float a) { return std::sqrt(a); }
 inline float fma(float a, float b, float c) { return std::fma(a, b, c); }
 inline float select(bool mask, float a, float b) { return mask ? a : b; }
+
+template <class T>
+inline T fms(const T& a, const T& b, const T& c) {
+  return fma(a, b, -c);
+}
+template <class T>
+inline T nfma(const T& a, const T& b, const T& c) {
+  return fma(-a, b, c);
+}
+template <class T>
+inline T nfms(const T& a, const T& b, const T& c) {
+  return fma(-a, b, -c);
+}
 
 }  // namespace scree

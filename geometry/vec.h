@@ -51,12 +51,21 @@ inline T dot(const Vec<T>& a, const Vec<T>& b) {
 }
 template <class T>
 inline Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
-  return {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
+  return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
 }
 // s a + b
 template <class T>
 inline Vec<T> fma(const T& s, const Vec<T>& a, const Vec<T>& b) {
   return {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)};
+}
+// b - s a, and -s a - b
+template <class T>
+inline Vec<T> nfma(const T& s, const Vec<T>& a, const Vec<T>& b) {
+  return {nfma(s, a.x, b.x), nfma(s, a.y, b.y), nfma(s, a.z, b.z)};
+}
+template <class T>
+inline Vec<T> nfms(const T& s, const Vec<T>& a, const Vec<T>& b) {
+  return {nfms(s, a.x, b.x), nfms(s, a.y, b.y), nfms(s, a.z, b.z)};
 }
 template <class T>
 inline Vec<T> select_vec(const auto& mask, const Vec<T>& yes, const Vec<T>& no) {

@@ -53,37 +53,59 @@ struct Reaction {
   T elastic;            // N, the spring's part of the normal force
 };
 
+// The normal force, and what the other parts take from it.
+template <class T>
+struct NormalResponse {
+  T force, elastic;      // N: spring and dashpot; the spring's part
+  T friction_limit;      // N, Coulomb's
+  T tangential_spring;   // k_t, N/m
+  T tangential_damping;  // g_t, N s/m
+};
+
+// `limit_attraction`: F_n >= 0 (LIGGGHTS's option limitForce; off there and here).
+template <class T>
+[[gnu::always_inline]] inline NormalResponse<T> hertz_normal(const Contact<T>& c, const PairConstants<T>& p,
+                                                             bool limit_attraction) {
+  const T s = sqrt(c.effective_radius * c.overlap);
+  const T root_sm = sqrt(s * c.effective_mass);
+  const T k_n = T(4.0 / 3.0) * p.effective_youngs * s;
+  const T elastic = k_n * c.overlap;
+  T force = nfma(p.normal_damping * root_sm, dot(c.velocity, c.normal), elastic);
+  if (limit_attraction) force = max(force, T(0));
+  return {force, elastic, p.sliding_friction * abs(force), T(8.0f) * p.effective_shear * s,
+          p.tangential_damping * root_sm};
+}
+
 // The tangential part: Mindlin's spring with history, cut by Coulomb's limit.
 template <class T>
-[[gnu::always_inline]] inline Vec<T> mindlin_friction(const Contact<T>& c, const T& k_t, const T& g_t, const T& limit,
-                                                      const T& dt, Vec<T>& xi) {
-  const Vec<T> v_t = fma(-dot(c.velocity, c.normal), c.normal, c.velocity);
+[[gnu::always_inline]] inline Vec<T> mindlin_friction(const Contact<T>& c, const NormalResponse<T>& n, const T& dt,
+                                                      Vec<T>& xi) {
+  const Vec<T> v_t = nfma(dot(c.velocity, c.normal), c.normal, c.velocity);
   const Vec<T> v_s = v_t + cross(c.normal, c.arm_spin);
   xi = fma(dt, v_s, xi);
-  xi = fma(-dot(xi, c.normal), c.normal, xi);
-  const T spring = k_t * sqrt(dot(xi, xi));
-  const auto slides = spring > limit;
-  const T scale = limit / spring;  // used where it slides only, and there spring > 0
+  xi = nfma(dot(xi, c.normal), c.normal, xi);
+  const T spring = n.tangential_spring * sqrt(dot(xi, xi));
+  const auto slides = spring > n.friction_limit;
+  const T scale = n.friction_limit / spring;  // used where it slides only, and there spring > 0
   xi = select_vec(slides, scale * xi, xi);
-  const T damping = select(slides, T(0), g_t);
-  return fma(-damping, v_s, -k_t * xi);
+  const T damping = select(slides, T(0), n.tangential_damping);
+  return nfms(damping, v_s, n.tangential_spring * xi);
 }
 
 // Rolling friction torque M (physics: constant directional torque, and elastic-plastic spring without dashpot).
 template <RollingModel model, class T>
 [[gnu::always_inline]] inline Vec<T> rolling_friction(const Contact<T>& c, const PairConstants<T>& p,
-                                                      const T& elastic_force, const T& force, const T& k_t, const T& dt,
-                                                      Vec<T>& torque_old) {
+                                                      const NormalResponse<T>& n, const T& dt, Vec<T>& torque_old) {
   if constexpr (model == RollingModel::cdt) {
     const T spin = sqrt(dot(c.rolling_spin, c.rolling_spin));
-    const T size = select(spin > T(0), p.rolling_friction * elastic_force * c.effective_radius / spin, T(0));
+    const T size = select(spin > T(0), p.rolling_friction * n.elastic * c.effective_radius / spin, T(0));
     const Vec<T> m = size * c.rolling_spin;
-    return fma(-dot(m, c.normal), c.normal, m);
+    return nfma(dot(m, c.normal), c.normal, m);
   } else if constexpr (model == RollingModel::epsd2) {
-    const T k_r = k_t * c.effective_radius * c.effective_radius;
-    const Vec<T> w_t = fma(-dot(c.rolling_spin, c.normal), c.normal, c.rolling_spin);
+    const T k_r = n.tangential_spring * c.effective_radius * c.effective_radius;
+    const Vec<T> w_t = nfma(dot(c.rolling_spin, c.normal), c.normal, c.rolling_spin);
     Vec<T> m = fma(k_r * dt, w_t, torque_old);
-    const T limit = p.rolling_friction * abs(force) * c.effective_radius;
+    const T limit = p.rolling_friction * abs(n.force) * c.effective_radius;
     const T size = sqrt(dot(m, m));
     const T scale = limit / size;
     m = select_vec(size > limit, scale * m, m);
@@ -94,23 +116,14 @@ template <RollingModel model, class T>
   }
 }
 
-// Hertz-Mindlin with history. `limit_attraction`: F_n >= 0 (LIGGGHTS's option limitForce; off there and here).
+// Hertz-Mindlin with history: the three parts together.
 template <RollingModel model, class T>
 [[gnu::always_inline]] inline Reaction<T> hertz_mindlin(const Contact<T>& c, const PairConstants<T>& p, const T& dt,
                                                         bool limit_attraction, ContactHistory<T>& history) {
-  const T s = sqrt(c.effective_radius * c.overlap);
-  const T root_sm = sqrt(s * c.effective_mass);
-  const T k_n = T(4.0 / 3.0) * p.effective_youngs * s;
-  const T k_t = T(8.0f) * p.effective_shear * s;
-  const T elastic = k_n * c.overlap;
-  T normal_force = fma(-(p.normal_damping * root_sm), dot(c.velocity, c.normal), elastic);
-  if (limit_attraction) normal_force = max(normal_force, T(0));
-
-  const T friction_limit = p.sliding_friction * abs(normal_force);
-  const Vec<T> tangential =
-      mindlin_friction(c, k_t, p.tangential_damping * root_sm, friction_limit, dt, history.tangential_displacement);
-  const Vec<T> rolling = rolling_friction<model>(c, p, elastic, normal_force, k_t, dt, history.rolling_torque);
-  return {fma(normal_force, c.normal, tangential), cross(c.normal, tangential), rolling, elastic};
+  const NormalResponse<T> n = hertz_normal(c, p, limit_attraction);
+  const Vec<T> tangential = mindlin_friction(c, n, dt, history.tangential_displacement);
+  const Vec<T> rolling = rolling_friction<model>(c, p, n, dt, history.rolling_torque);
+  return {fma(n.force, c.normal, tangential), cross(c.normal, tangential), rolling, n.elastic};
 }
 
 }  // namespace scree

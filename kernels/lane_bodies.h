@@ -59,16 +59,23 @@ template <class L>
   return L::narrow(fma(radius_sum, radius_sum, -distance2)) / (L::narrow(radius_sum) + distance);
 }
 
+// Three rows of a block's history.
+template <class L>
+[[gnu::always_inline]] inline Vec<typename L::F> load_vec(const typename L::Real* h) {
+  return {L::load(h), L::load(h + kBlock), L::load(h + 2 * kBlock)};
+}
+template <class L>
+[[gnu::always_inline]] inline void store_vec(const Vec<typename L::F>& v, typename L::Real* h) {
+  L::store(v.x, h), L::store(v.y, h + kBlock), L::store(v.z, h + 2 * kBlock);
+}
+
 template <class L>
 [[gnu::always_inline]] inline ContactHistory<typename L::F> load_history(const typename L::Real* h) {
-  return {{L::load(h), L::load(h + kBlock), L::load(h + 2 * kBlock)},
-          {L::load(h + 3 * kBlock), L::load(h + 4 * kBlock), L::load(h + 5 * kBlock)}};
+  return {load_vec<L>(h), load_vec<L>(h + 3 * kBlock)};
 }
 template <class L>
 [[gnu::always_inline]] inline void store_history(const ContactHistory<typename L::F>& h, typename L::Real* p) {
-  const Vec<typename L::F>&xi = h.tangential_displacement, &m = h.rolling_torque;
-  L::store(xi.x, p), L::store(xi.y, p + kBlock), L::store(xi.z, p + 2 * kBlock);
-  L::store(m.x, p + 3 * kBlock), L::store(m.y, p + 4 * kBlock), L::store(m.z, p + 5 * kBlock);
+  store_vec<L>(h.tangential_displacement, p), store_vec<L>(h.rolling_torque, p + 3 * kBlock);
 }
 template <class F>
 [[gnu::always_inline]] inline ContactHistory<F> select_history(const auto& mask, const ContactHistory<F>& yes,

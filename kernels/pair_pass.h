@@ -34,9 +34,10 @@ struct PairGeometry {
   typename L::F overlap_share;
 };
 
+// Into `g`, not returned: a copy of it costs a tenth of the pass.
 template <class L, bool wraps>
-[[gnu::always_inline]] inline PairGeometry<L> pair_geometry(const Bodies<L>& i, const Bodies<L>& j,
-                                                            const StepSettings& settings) {
+[[gnu::always_inline]] inline void pair_geometry(const Bodies<L>& i, const Bodies<L>& j, const StepSettings& settings,
+                                                 PairGeometry<L>& g) {
   using F = typename L::F;
   using D = typename L::D;
   Vec<D> d = i.position - j.position;
@@ -47,7 +48,6 @@ template <class L, bool wraps>
   const F overlap = overlap_from<L>(radius_sum, distance2, distance);
   const F inverse_sum = F(1) / L::narrow(radius_sum);
 
-  PairGeometry<L> g;
   g.contact.normal = (F(1) / distance) * narrow<L>(d);
   g.contact.overlap = overlap;
   g.contact.effective_radius = i.radius * j.radius * inverse_sum;
@@ -58,7 +58,6 @@ template <class L, bool wraps>
   g.contact.arm_spin = g.arm_i * i.spin + g.arm_j * j.spin;
   g.contact.rolling_spin = i.spin - j.spin;
   g.overlap_share = overlap * inverse_sum;
-  return g;
 }
 
 template <class L, class Traits>
@@ -72,57 +71,77 @@ template <class L, class Traits>
   return gather_constants<L>(rows);
 }
 
-template <class F>
-struct ForceTorque {
-  Vec<F> force, torque;
-};
-
 // `width` contacts of a block, from `lane` on.
 template <class L, bool wraps>
-[[gnu::always_inline]] inline PairGeometry<L> pair_lanes(const ChunkTask<typename L::Real>& task,
-                                                         const PairBlock<typename L::Real>& block, int lane) {
-  return pair_geometry<L, wraps>(gather_bodies<L>(task.old_particles + task.begin, block.i + lane),
-                                 gather_bodies<L>(task.old_particles, block.j + lane), *task.settings);
+[[gnu::always_inline]] inline void pair_lanes(const ChunkTask<typename L::Real>& task,
+                                              const PairBlock<typename L::Real>& block, int lane,
+                                              PairGeometry<L>& geometry) {
+  pair_geometry<L, wraps>(gather_bodies<L>(task.old_particles + task.begin, block.i + lane),
+                          gather_bodies<L>(task.old_particles, block.j + lane), *task.settings, geometry);
 }
 
-template <class F>
-struct PairReaction {
-  ForceTorque<F> on_i, on_j;
+// A vector of contacts on its way through the law.
+template <class L>
+struct PairLaw {
+  using F = typename L::F;
+  decltype(F() > F()) touching;
+  NormalResponse<F> normal;
+  Vec<F> force, lever_torque, rolling;
 };
 
 template <class L, class Traits>
-[[gnu::always_inline]] inline PairReaction<typename L::F> react(const ChunkTask<typename L::Real>& task,
-                                                                PairBlock<typename L::Real>& block, int lane,
-                                                                PairGeometry<L>& g, typename L::F& max_share,
-                                                                WorkOf<L, Traits>& work) {
+[[gnu::always_inline]] inline void normal_lanes(const ChunkTask<typename L::Real>& task,
+                                                const PairBlock<typename L::Real>& block, int lane, PairGeometry<L>& g,
+                                                PairLaw<L>& law, typename L::F& max_share) {
   using F = typename L::F;
-  const auto touching = g.contact.overlap > F(0);
-  typename L::Real* stored = block.history[0] + lane;
-  const Vec<F> zero{F(0), F(0), F(0)};
-  if (!any(touching)) {
-    store_history<L>(no_history<F>(), stored);
-    return {{zero, zero}, {zero, zero}};
-  }
-  max_share = max(max_share, select(touching, g.overlap_share, F(0)));
+  law.touching = g.contact.overlap > F(0);
+  max_share = max(max_share, select(law.touching, g.overlap_share, F(0)));
   g.contact.overlap = max(g.contact.overlap, F(0));
-  ContactHistory<F> history = load_history<L>(stored);
-  const PairConstants<F> constants = pair_constants_of<L, Traits>(task, block.i + lane, block.j + lane);
-  const Reaction<F> r = hertz_mindlin<Traits::rolling>(g.contact, constants, F(task.settings->history_dt),
-                                                       task.settings->limit_attraction, history);
-  store_history<L>(select_history(touching, history, no_history<F>()), stored);
-  if constexpr (Traits::ledger) {
-    typename L::Real share[L::width];  // the other chunk of a pair across two counts it, too
-    for (int k = 0; k < L::width; ++k) share[k] = block.row[lane + k] == task.end - task.begin ? 0.5f : 1.0f;
-    add_powers<L>(g.contact, r, L::load(share), touching, work, lane);
-  }
-  const Vec<F> force = select_vec(touching, r.force, zero);
-  const Vec<F> lever = select_vec(touching, r.lever_torque, zero), rolling = select_vec(touching, r.rolling, zero);
-  return {{force, fma(-g.arm_i, lever, -rolling)}, {-force, fma(-g.arm_j, lever, rolling)}};
+  law.normal = hertz_normal(g.contact, pair_constants_of<L, Traits>(task, block.i + lane, block.j + lane),
+                            task.settings->limit_attraction);
 }
 
-// Blocks first..last - 1, a block in three stages: a contact is a chain of divisions and square roots, and vectors side
-// by side in one stage fill each other's waits. The sixteen i rows first, then the sixteen j rows: the order of
-// additions, and so the bits, are those of every lane width.
+template <class L>
+[[gnu::always_inline]] inline void friction_lanes(const ChunkTask<typename L::Real>& task,
+                                                  PairBlock<typename L::Real>& block, int lane,
+                                                  const PairGeometry<L>& g, PairLaw<L>& law) {
+  using F = typename L::F;
+  const Vec<F> zero{F(0), F(0), F(0)};
+  typename L::Real* stored = block.history[0] + lane;
+  Vec<F> xi = load_vec<L>(stored);
+  const Vec<F> tangential = mindlin_friction(g.contact, law.normal, F(task.settings->history_dt), xi);
+  store_vec<L>(select_vec(law.touching, xi, zero), stored);
+  law.force = select_vec(law.touching, fma(law.normal.force, g.contact.normal, tangential), zero);
+  law.lever_torque = select_vec(law.touching, cross(g.contact.normal, tangential), zero);
+}
+
+template <class L, class Traits>
+[[gnu::always_inline]] inline void rolling_lanes(const ChunkTask<typename L::Real>& task,
+                                                 PairBlock<typename L::Real>& block, int lane, const PairGeometry<L>& g,
+                                                 PairLaw<L>& law) {
+  using F = typename L::F;
+  const Vec<F> zero{F(0), F(0), F(0)};
+  typename L::Real* stored = block.history[3] + lane;
+  Vec<F> torque = load_vec<L>(stored);
+  const Vec<F> rolling =
+      rolling_friction<Traits::rolling>(g.contact, pair_constants_of<L, Traits>(task, block.i + lane, block.j + lane),
+                                        law.normal, F(task.settings->history_dt), torque);
+  store_vec<L>(select_vec(law.touching, torque, zero), stored);
+  law.rolling = select_vec(law.touching, rolling, zero);
+}
+
+template <class L>
+inline void add_pair_powers(const ChunkTask<typename L::Real>& task, const PairBlock<typename L::Real>& block, int lane,
+                            const PairGeometry<L>& g, const PairLaw<L>& law, BlockWork<typename L::Real>& work) {
+  typename L::Real share[L::width];  // the other chunk of a pair across two counts it, too
+  for (int k = 0; k < L::width; ++k) share[k] = block.row[lane + k] == task.end - task.begin ? 0.5f : 1.0f;
+  add_powers<L>(g.contact, {law.force, law.lever_torque, law.rolling, law.normal.elastic}, L::load(share), law.touching,
+                work, lane);
+}
+
+// Blocks first..last - 1, a block in stages: a contact is a chain of divisions and square roots, and vectors side by
+// side in a stage short enough for the processor's window fill each other's waits. The sixteen i rows first, then the
+// sixteen j rows: the order of additions, and so the bits, are those of every lane width.
 template <class L, class Traits, bool wraps>
 inline void pair_pass(const ChunkTask<typename L::Real>& task, size_t first, size_t last, PassOutcome& outcome) {
   using F = typename L::F;
@@ -133,17 +152,25 @@ inline void pair_pass(const ChunkTask<typename L::Real>& task, size_t first, siz
   for (size_t b = first; b < last; ++b) {
     if (b + 2 < count)  // the particles that the block after next will read
       for (int k = 0; k < kBlock; ++k) __builtin_prefetch(&task.old_particles[blocks[b + 2].j[k]]);
+    PairBlock<typename L::Real>& block = blocks[b];
     PairGeometry<L> geometry[vectors];
-    for (int k = 0; k < vectors; ++k) geometry[k] = pair_lanes<L, wraps>(task, blocks[b], k * L::width);
-    PairReaction<F> reaction[vectors];
-    WorkOf<L, Traits> work;
+    PairLaw<L> law[vectors];
+    for (int k = 0; k < vectors; ++k) pair_lanes<L, wraps>(task, block, k * L::width, geometry[k]);
     for (int k = 0; k < vectors; ++k)
-      reaction[k] = react<L, Traits>(task, blocks[b], k * L::width, geometry[k], max_share, work);
-    if constexpr (Traits::ledger) work.add_to(outcome.ledger);
+      normal_lanes<L, Traits>(task, block, k * L::width, geometry[k], law[k], max_share);
+    for (int k = 0; k < vectors; ++k) friction_lanes<L>(task, block, k * L::width, geometry[k], law[k]);
+    for (int k = 0; k < vectors; ++k) rolling_lanes<L, Traits>(task, block, k * L::width, geometry[k], law[k]);
+    if constexpr (Traits::ledger) {
+      WorkOf<L, Traits> work;
+      for (int k = 0; k < vectors; ++k) add_pair_powers<L>(task, block, k * L::width, geometry[k], law[k], work);
+      work.add_to(outcome.ledger);
+    }
     for (int k = 0; k < vectors; ++k)
-      add_to_rows<L>(task, blocks[b].i + k * L::width, reaction[k].on_i.force, reaction[k].on_i.torque);
+      add_to_rows<L>(task, block.i + k * L::width, law[k].force,
+                     nfms(geometry[k].arm_i, law[k].lever_torque, law[k].rolling));
     for (int k = 0; k < vectors; ++k)
-      add_to_rows<L>(task, blocks[b].row + k * L::width, reaction[k].on_j.force, reaction[k].on_j.torque);
+      add_to_rows<L>(task, block.row + k * L::width, -law[k].force,
+                     nfma(geometry[k].arm_j, law[k].lever_torque, law[k].rolling));
   }
   outcome.max_overlap = std::max<double>(outcome.max_overlap, L::max_lane(max_share));
 }

@@ -159,6 +159,9 @@ inline FMask operator!(FMask a) { return {hn::Not(a.m)}; }
 inline bool any(FMask a) { return !hn::AllFalse(FloatTag(), a.m); }
 inline F select(FMask m, F yes, F no) { return hn::IfThenElse(m.m, yes.v, no.v); }
 inline F fma(F a, F b, F c) { return hn::MulAdd(a.v, b.v, c.v); }
+inline F fms(F a, F b, F c) { return hn::MulSub(a.v, b.v, c.v); }
+inline F nfma(F a, F b, F c) { return hn::NegMulAdd(a.v, b.v, c.v); }
+inline F nfms(F a, F b, F c) { return hn::NegMulSub(a.v, b.v, c.v); }
 inline F sqrt(F a) { return hn::Sqrt(a.v); }
 inline F abs(F a) { return hn::Abs(a.v); }
 inline F min(F a, F b) { return hn::Min(a.v, b.v); }

@@ -214,7 +214,7 @@ inline void solid_contact(const SolidLanes<L>& lanes, uint32_t s, ContactHistory
   const F arm = lanes.i.radius - F(0.5) * c.overlap;
   const Vec<F> zero{F(0), F(0), F(0)};
   force += select_vec(lanes.kept[s], r.force, zero);
-  torque += select_vec(lanes.kept[s], fma(-arm, r.lever_torque, -r.rolling), zero);
+  torque += select_vec(lanes.kept[s], nfms(arm, r.lever_torque, r.rolling), zero);
   if constexpr (Traits::ledger) add_solid_work(lanes, s, c, r, work);
 }
 

@@ -53,7 +53,8 @@ void visit_touching_pairs(const ChunkTask<Real>& task, const ChunkContacts<Real>
   for (uint32_t k = 0; k < contacts.pairs; ++k) {
     const PairBlock<Real>& block = contacts.blocks[k / kBlock];
     const int lane = static_cast<int>(k % kBlock);
-    const PairGeometry<L> g = pair_lanes<L, true>(task, block, lane);
+    PairGeometry<L> g;
+    pair_lanes<L, true>(task, block, lane, g);
     if (!(g.contact.overlap > 0)) continue;
     TouchingContact seen{.i = contacts.pair_i(k), .j = contacts.pair_j(k)};
     apply_law(task, g.contact,

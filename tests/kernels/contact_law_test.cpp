@@ -66,7 +66,9 @@ void expect_exactly_odd(uint32_t seed) {
     ContactHistory<Real> seen_from_i{random.vector<Real>(2e-7), random.vector<Real>(1e-9)};
     ContactHistory<Real> seen_from_j{-seen_from_i.tangential_displacement, -seen_from_i.rolling_torque};
     for (int step = 0; step < 4; ++step) {
-      const PairGeometry<L> g = pair_geometry<L, true>(i, j, settings), h = pair_geometry<L, true>(j, i, settings);
+      PairGeometry<L> g, h;
+      pair_geometry<L, true>(i, j, settings, g);
+      pair_geometry<L, true>(j, i, settings, h);
       ASSERT_GT(g.contact.overlap, 0);
       ASSERT_EQ(g.contact.overlap, h.contact.overlap);
       ASSERT_EQ(g.arm_i, h.arm_j);
