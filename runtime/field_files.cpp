@@ -47,7 +47,7 @@ void FieldFiles::look(const RunView& run) {
   }
   if (has_frame_of_now(engine)) return;
   background_.finish();  // one frame in memory at a time
-  const auto frame = std::make_shared<ParticleFrame>(run.c, engine, settings.write);
+  const auto frame = std::make_shared<ParticleSnapshot>(run.c, engine, settings.write);
   particles_.write(step, engine.time(), [frame](VtkHdfFile& file) { frame->write(file); });
   newest_.inserted = engine.counters().inserted, newest_.contacts_known = engine.knows_contacts();
 }

@@ -132,18 +132,6 @@ std::vector<Extent> Hdf5Writer::close() {
 
 // ---- reading
 
-namespace {
-
-constexpr uint64_t kDeflateExpands = 1032;  // at most: 258 bytes from two bits (RFC 1951)
-
-// Bytes of an array for each byte of the file; a claim beyond it is corrupt, and no memory is asked for it.
-uint64_t most_expansion(hid_t set) {
-  const Handle how(H5Dget_create_plist(set), H5Pclose);
-  return checked(H5Pget_nfilters(how), "") > 0 ? kDeflateExpands : 1;
-}
-
-}  // namespace
-
 struct Hdf5Reader::State {
   Handle file;
   OpenArray array;

@@ -48,6 +48,12 @@ void require_library_memory() {
   std::free(memory);
 }
 
+uint64_t most_expansion(hid_t array) {
+  constexpr uint64_t kDeflateExpands = 1032;  // 258 bytes from two bits (RFC 1951)
+  const Handle how(H5Dget_create_plist(array), H5Pclose);
+  return checked(H5Pget_nfilters(how), "") > 0 ? kDeflateExpands : 1;
+}
+
 Handle property_list(hid_t type) { return {H5Pcreate(type), H5Pclose}; }
 
 Handle unlocked_access() {

@@ -1,5 +1,5 @@
 // What the files that name HDF5 share: handles that close themselves, errors as exceptions, one thread at a time.
-// Included by hdf5_file.cpp and vtkhdf_file.cpp only.
+// Included by hdf5_file.cpp, vtkhdf_file.cpp and vtkhdf_reader.cpp only.
 #pragma once
 
 #include <hdf5.h>
@@ -59,6 +59,10 @@ class Handle {
 // Before a file is opened: the library writes through null pointers where memory ends on the way (seen: H5AC_create of
 // 1.10). Throws std::bad_alloc where it has no room to work in.
 void require_library_memory();
+
+// Bytes of an array, at most, for each byte of the file that holds it; a claim beyond is corrupt, and no memory is asked
+// for it.
+uint64_t most_expansion(hid_t array);
 
 Handle property_list(hid_t type);
 Handle type_handle(const ElementType& type);

@@ -13,7 +13,7 @@ namespace scree {
 
 namespace {
 
-using Column = ParticleFrame::Column;
+using Column = ParticleSnapshot::Column;
 
 constexpr double kMostRounding = 1e-4;  // of a radius, of positions in single precision
 
@@ -116,7 +116,7 @@ std::vector<std::string> particle_field_names() {
   return names;
 }
 
-ParticleFrame::ParticleFrame(const Case& c, const Engine& engine, const std::vector<std::string>& fields) {
+ParticleSnapshot::ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& fields) {
   const auto wanted = [&](const Field& field) { return std::ranges::find(fields, field.name) != fields.end(); };
   Source s{engine.particles(), engine.knows_contacts(), {}, engine.time(), engine.dt(), engine.insertions()};
   if (s.contacts_known && std::ranges::any_of(kFields, [&](const Field& f) { return f.from_contacts && wanted(f); }))
@@ -130,7 +130,7 @@ ParticleFrame::ParticleFrame(const Case& c, const Engine& engine, const std::vec
     if (wanted(field)) columns_.push_back(field.make(s, field.name));
 }
 
-void ParticleFrame::write(VtkHdfFile& file) const {
+void ParticleSnapshot::write(VtkHdfFile& file) const {
   const Column& at = columns_.front();
   write_vertices(file, at.type, at.values.data(), at.size() / 3);
   for (size_t k = 1; k < columns_.size(); ++k) {

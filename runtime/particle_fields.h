@@ -23,9 +23,9 @@ std::vector<std::string> particle_field_names();
 //   force, coordination, wall_contacts, contact_stress    as in runtime/contact_sums.h: N, Pa (xx yy zz xy yz xz)
 //   age                s since the particle was inserted
 // What comes from contacts is not a number (counts: -1) while the engine does not know its contacts.
-class ParticleFrame {
+class ParticleSnapshot {
  public:
-  ParticleFrame(const Case& c, const Engine& engine, const std::vector<std::string>& fields);
+  ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& fields);
   void write(VtkHdfFile& file) const;
 
   // Values of the field `name` as they are written, row after row.

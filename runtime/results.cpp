@@ -37,13 +37,13 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
   std::FILE* f = std::fopen(temporary.c_str(), "wb");
   if (!f) fail(path, errno);
   const bool written = std::fwrite(content.data(), 1, content.size(), f) == content.size() && std::fflush(f) == 0;
-  const int error = errno;
-  std::fclose(f);
-  if (!written) {
-    std::filesystem::remove(temporary);
-    fail(path, error);
-  }
-  std::filesystem::rename(temporary, path);
+  int error = errno;
+  const bool closed = std::fclose(f) == 0;  // a network file system may say only now that the disk is full
+  if (written && !closed) error = errno;
+  if (written && closed && std::rename(temporary.c_str(), path.c_str()) == 0) return;
+  if (written && closed) error = errno;
+  std::remove(temporary.c_str());
+  fail(path, error);
 }
 
 namespace {

@@ -1,7 +1,7 @@
 """Scree beside LIGGGHTS and LAMMPS on the same particles: what `bench/run --peers` runs. See bench/README.md.
 
-Every measurement is taken once a round, one after the other, so that a slow spell of the machine meets all of them;
-a ratio is the quotient of two medians over the rounds.
+Every measurement is taken once a round, one after the other, so that a slow spell of the machine meets both sides of a
+ratio; a ratio is the median, over the rounds, of the quotient of a round's two values.
 """
 
 import argparse
@@ -28,8 +28,8 @@ DRAIN_STEPS = 1000
 BYTES_OF_10M = 6e9  # that the 10M bed needs at its peak, this program's own copy of the particles included
 
 # Within a round: a ratio's two measurements are close in time.
-ORDER = ["liggghts_bed", "scree_bed", "liggghts_bed_paper_skin", "scree_bed_1_thread", "lammps_bed",
-         "scree_polydisperse_bed", "liggghts_drain", "scree_drain", "scree_bed_10M"]
+ORDER = ["lammps_bed", "liggghts_bed_paper_skin", "liggghts_bed", "scree_bed", "scree_bed_1_thread",
+         "scree_polydisperse_bed", "scree_bed_10M", "liggghts_drain", "scree_drain"]
 
 # ratio: numerator, denominator
 RATIOS = {
@@ -195,22 +195,23 @@ class Comparison:
                 "rounds": len(speeds), "values": speeds, "cpu": machine()["cpu"]}
 
     def ratios(self, pairs, figures):
-        """Each ratio, or None and the reason why."""
-        ratios, reasons = {}, {}
+        """Each ratio, or None and the reason why; and the quotients of the rounds."""
+        ratios, rounds, reasons = {}, {}, {}
         for ratio, pair in pairs.items():
             absent = [name for name in pair if name not in figures]
             if absent:
                 ratios[ratio], reasons[ratio] = None, self.reasons[absent[0]]
             else:
-                over, under = (figures[name]["particle_steps_per_second"] for name in pair)
-                ratios[ratio] = over / under
-        return ratios, reasons
+                rounds[ratio] = [over / under for over, under in zip(*(figures[name]["values"] for name in pair))]
+                ratios[ratio] = statistics.median(rounds[ratio])
+        return ratios, rounds, reasons
 
     def results(self):
         figures = {name: self.figure(name) for name in ORDER if name in self.takes}
-        ratios, reasons = self.ratios(RATIOS, figures)
-        further, further_reasons = self.ratios(FURTHER_RATIOS, figures)
-        return {"ratios": ratios, "further_ratios": further, "reasons": {**reasons, **further_reasons},
+        ratios, by_round, reasons = self.ratios(RATIOS, figures)
+        further, further_by_round, further_reasons = self.ratios(FURTHER_RATIOS, figures)
+        return {"ratios": ratios, "further_ratios": further, "by_round": by_round | further_by_round,
+                "reasons": reasons | further_reasons,
                 "behind": RATIOS | FURTHER_RATIOS, "figures": figures, "searches": self.searches, "quick": self.quick,
                 "rounds": self.rounds}
 
@@ -226,9 +227,11 @@ def print_results(results):
         low, high = (x / 1e6 for x in (min(f["values"]), max(f["values"])))
         speed = f["particle_steps_per_second"] / 1e6
         print(f"{name:<26} {speed:18.4g}  {low:7.4g} {high:7.4g}  {skin:>7}  {f.get('state_hash', '')}")
-    print(f"\n{'ratio of medians':<32} {'':>8}")
+    print(f"\n{'ratio':<32} {'median':>8}  of the rounds")
     for name, ratio in (results["ratios"] | results["further_ratios"]).items():
-        print(f"{name:<32} " + (f"{ratio:8.3g}" if ratio is not None else f"       -  ({results['reasons'][name]})"))
+        rounds = ", ".join(f"{r:.3g}" for r in results["by_round"].get(name, []))
+        value = f"{ratio:8.3g}  {rounds}" if ratio is not None else f"       -  ({results['reasons'][name]})"
+        print(f"{name:<32} {value}")
     if results["quick"]:
         print("--quick: the beds are of 94,536 grains, not of a million")
 

@@ -7,6 +7,7 @@
 #include "runtime/case_reader.h"
 #include "runtime/render/film.h"
 #include "runtime/render/picture.h"
+#include "runtime/run_folder.h"
 
 namespace scree {
 
@@ -93,6 +94,13 @@ void make_folder(const std::filesystem::path& folder) {
   if (error) throw RunError(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
 }
 
+// Of an earlier, longer film: they would be the new one's end.
+void remove_pictures(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const std::filesystem::path& path : entries_of(folder))
+    if (path.extension() == ".png") std::filesystem::remove(path, ignored);
+}
+
 std::string picture_name(const PictureRequest& request, double time) {
   const std::string name = fmt::format("{}_{}", request.camera.name, request.colour);
   return std::isnan(time) ? name + ".png" : fmt::format("{}_{:.6f}.png", name, time);
@@ -126,7 +134,7 @@ void render_folder(const RenderArguments& a, const std::function<void(const std:
   make_folder(one_file ? std::filesystem::absolute(out).parent_path() : out);
   for (PictureRequest& request : requests) {
     const std::filesystem::path film = out / fmt::format("film_{}_{}", request.camera.name, request.colour);
-    if (a.film) make_folder(film);
+    if (a.film) make_folder(film), remove_pictures(film);
     if (a.film && !request.range) request.range = range_of_film(c, frames, request.colour);
     for (size_t k = 0; k < frames.size(); ++k) {
       const Image image =

@@ -8,8 +8,10 @@
 #include <map>
 
 #include "geometry/closest_point.h"
+#include "runtime/case_error.h"
 #include "runtime/contact_sums.h"
 #include "runtime/particle_fields.h"
+#include "runtime/render/particle_frame.h"
 #include "runtime/solid_mesh.h"
 #include "tests/runtime/case_text.h"
 #include "tests/scenes.h"
@@ -189,8 +191,8 @@ TEST(FieldFiles, SayThatContactsAreUnknownAfterAnInsertion) {
   Stand s(heap_case());
   FieldFiles fields(s.c, s.folder_path, s.engine->dt());
   s.engine->insert(heap(s.c));
-  const ParticleFrame before(s.c, *s.engine, {"force", "coordination"});
-  const auto value = [](const ParticleFrame::Column& c, auto like) {
+  const ParticleSnapshot before(s.c, *s.engine, {"force", "coordination"});
+  const auto value = [](const ParticleSnapshot::Column& c, auto like) {
     std::memcpy(&like, c.values.data(), sizeof like);
     return like;
   };
@@ -198,7 +200,7 @@ TEST(FieldFiles, SayThatContactsAreUnknownAfterAnInsertion) {
   EXPECT_TRUE(std::isnan(value(before.columns()[4], 0.0f)));
   EXPECT_EQ(value(before.columns()[5], int16_t{}), -1);
   s.engine->step();
-  const ParticleFrame after(s.c, *s.engine, {"force", "coordination"});
+  const ParticleSnapshot after(s.c, *s.engine, {"force", "coordination"});
   EXPECT_FALSE(std::isnan(value(after.columns()[4], 0.0f)));
   EXPECT_GE(value(after.columns()[5], int16_t{}), 0);
 }
@@ -236,13 +238,53 @@ TEST(FieldFiles, OnlyNamedFieldsAreWritten) {
   for (const char* name : {"velocity", "force"}) EXPECT_FALSE(file.has(std::string("VTKHDF/PointData/") + name));
 }
 
+TEST(FieldFiles, AreReadBackForPictures) {
+  Stand s(heap_case());
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  s.engine->insert(heap(s.c));
+  for (int look = 0; look < 3; ++look) {
+    for (int k = 0; k < 100; ++k) s.engine->step();
+    fields.look(s.view());
+  }
+  fields.finish(s.view());
+  const std::vector<FrameSource> frames = list_particle_frames(s.folder_path);
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_LT(frames[0].time, frames[1].time);
+  EXPECT_NEAR(frames[2].time, s.engine->time(), 1e-12);
+  const ParticleFrame frame = read_particle_frame(frames[2]);
+  const std::vector<ParticleState> particles = s.engine->particles();
+  ASSERT_EQ(frame.count(), particles.size());
+  ASSERT_TRUE(frame.find("velocity") && frame.find("contact_stress") && frame.find("kind"));
+  EXPECT_EQ(frame.find("id"), nullptr);
+  EXPECT_EQ(frame.find("contact_stress")->components, 6);
+  for (size_t k = 0; k < particles.size(); ++k) {
+    EXPECT_NEAR(frame.positions[k].z, particles[k].position.z, 1e-8);
+    EXPECT_EQ(frame.radii[k], static_cast<float>(particles[k].radius));
+    EXPECT_EQ(frame.find("velocity")->values[3 * k], static_cast<float>(particles[k].velocity.x));
+    EXPECT_EQ(frame.find("kind")->values[k], static_cast<float>(particles[k].kind));
+  }
+}
+
+TEST(FieldFiles, OfAnotherOriginAreRefusedByName) {
+  const testing::Folder folder;
+  const fs::path file = fs::path(folder.path("fields")) / "particles_000000000001.vtkhdf";
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << "no HDF5 file";
+  try {
+    list_particle_frames(folder.path(""));
+    FAIL() << "it was taken";
+  } catch (const CaseError& e) {
+    EXPECT_NE(std::string(e.what()).find("particles_000000000001.vtkhdf"), std::string::npos) << e.what();
+  }
+}
+
 // A wide domain of small grains: single precision would move them.
 TEST(FieldFiles, TakeDoubleWherePositionsNeedIt) {
   Case c = heap_case();
   const auto engine = make_engine(c);
-  EXPECT_EQ(ParticleFrame(c, *engine, {}).columns()[0].type.size, sizeof(float));
+  EXPECT_EQ(ParticleSnapshot(c, *engine, {}).columns()[0].type.size, sizeof(float));
   c.domain.max.x = 20;
-  EXPECT_EQ(ParticleFrame(c, *engine, {}).columns()[0].type.size, sizeof(double));
+  EXPECT_EQ(ParticleSnapshot(c, *engine, {}).columns()[0].type.size, sizeof(double));
 }
 
 }  // namespace
