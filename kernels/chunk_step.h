@@ -27,7 +27,7 @@ inline void promote_near_pairs(const ChunkTask<typename L::Real>& task) {
     const Bodies<L> a = gather_bodies<L>(task.old_particles, i), b = gather_bodies<L>(task.old_particles, j);
     Vec<D> d = a.position - b.position;
     if (wraps) d = minimum_image(d, settings.period, settings.inverse_period);
-    const D reach = L::widen(a.radius) + L::widen(b.radius) + D(settings.inner);
+    const D reach = L::widen(a.radius) + L::widen(b.radius) + D(task.contacts->inner);
     const unsigned close = L::bits(L::narrow(fma(reach, reach, -dot(d, d))) >= F(0));
     for (int k = 0; k < L::width && first + k < near.size(); ++k) {
       if (close >> k & 1u)
@@ -113,7 +113,8 @@ ChunkOutcome step_chunk(const ChunkTask<typename L::Real>& task) {
   using Real = typename L::Real;
   ChunkOutcome outcome;
   PartClock clock(task.settings->profile, outcome);
-  if (task.settings->check_near) promote_near_pairs<L>(task);
+  if (task.check_near) promote_near_pairs<L>(task);
+  outcome.checked_near = task.check_near;
   clock.ends(StepPart::near_check);
   std::memset(task.rows, 0, (task.end - task.begin + 1) * size_t{8} * sizeof(Real));
   const PassOutcome pairs = pair_pass<L, Traits>(task);

@@ -38,8 +38,6 @@ struct StepSettings {
   double gravity[3];                    // m/s2
   double period[3], inverse_period[3];  // m, 1/m; 0: not periodic
   bool limit_attraction;
-  bool check_near;       // promote near pairs before the forces
-  double inner;          // m: a near pair closer than this becomes active
   double speed_limit;    // m/s: a particle faster than this (or NaN) fails the step
   bool profile = false;  // ChunkOutcome::seconds is wanted
 };
@@ -56,7 +54,8 @@ struct ChunkTask {
   SkeletonTable<QuadOf, Real> quads;
   SkeletonTable<RevolutionOf, Real> revolutions;
   const StepSettings* settings;
-  Real* rows;  // scratch: (chunk + 1) rows of eight: force, torque, -, -; the last row collects what is not ours
+  bool check_near;  // promote near pairs before the forces
+  Real* rows;       // scratch: (chunk + 1) rows of eight: force, torque, -, -; the last row collects what is not ours
 };
 
 }  // namespace scree

@@ -6,7 +6,8 @@
 //      chunk A           chunk B          stored in A: (1,2) (2,5)    in B: (5,2) (5,6)
 //    [ 1 . 2 ] ------- [ 5 . 6 ]
 //
-// Near pairs (within the outer skin, not the inner) wait in `near` and are promoted to blocks as they approach.
+// Near pairs (within the outer skin, not the inner) wait in `near` and are promoted to blocks as they approach: looked
+// through when the speeds of this chunk and of those beside it could have closed the inner skin.
 #pragma once
 
 #include <cstddef>
@@ -59,12 +60,16 @@ struct ChunkContacts {
   size_t first_wrapping = kNoBlock;
   static constexpr size_t kNoBlock = ~size_t{0};
   std::vector<NearPair> near;
+  std::vector<uint32_t> beside;  // other chunks that near pairs reach into
+  double inner = 0;              // m: a near pair closer than this becomes active
+  double closing = 0;            // m, bound on any near pair's approach since they were last looked through
   std::vector<SolidBlock> solid_blocks;
   std::vector<SolidSlot<Real>> slots;
 
   // Empties the lists; they are now of particles first..last - 1.
   void clear(uint32_t first, uint32_t last, uint32_t dummy_particle) {
-    blocks.clear(), near.clear(), solid_blocks.clear(), slots.clear();
+    blocks.clear(), near.clear(), beside.clear(), solid_blocks.clear(), slots.clear();
+    inner = closing = 0;
     pairs = 0, first_wrapping = kNoBlock;
     begin = first, end = last, dummy = dummy_particle;
   }
@@ -91,14 +96,16 @@ struct ChunkContacts {
     visit("begin", &ChunkContacts::begin), visit("end", &ChunkContacts::end), visit("dummy", &ChunkContacts::dummy);
     visit("blocks", &ChunkContacts::blocks), visit("first_wrapping", &ChunkContacts::first_wrapping);
     visit("pairs", &ChunkContacts::pairs);
-    visit("near", &ChunkContacts::near);
+    visit("near", &ChunkContacts::near), visit("beside", &ChunkContacts::beside);
+    visit("inner", &ChunkContacts::inner), visit("closing", &ChunkContacts::closing);
     visit("solid_blocks", &ChunkContacts::solid_blocks);
     visit("slots", &ChunkContacts::slots);
   }
 
   size_t bytes() const {
     return blocks.capacity() * sizeof(blocks[0]) + near.capacity() * sizeof(near[0]) +
-           solid_blocks.capacity() * sizeof(solid_blocks[0]) + slots.capacity() * sizeof(slots[0]);
+           beside.capacity() * sizeof(beside[0]) + solid_blocks.capacity() * sizeof(solid_blocks[0]) +
+           slots.capacity() * sizeof(slots[0]);
   }
 };
 

@@ -62,8 +62,6 @@ Outcome stepped(const StepKernels<float>& kernels, bool uniform) {
                               .period = {},
                               .inverse_period = {},
                               .limit_attraction = false,
-                              .check_near = true,
-                              .inner = 1e-5,
                               .speed_limit = 1e3,
                               .profile = false};
   Outcome o{heap(), neighbours()};
@@ -82,6 +80,7 @@ Outcome stepped(const StepKernels<float>& kernels, bool uniform) {
                   {},
                   {},
                   &settings,
+                  true,
                   storage.data() + off});
     std::swap(o.particles, next);
   }

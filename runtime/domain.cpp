@@ -137,16 +137,14 @@ void Domain<Real>::step() {
   const bool first = counters_.steps == 0;
   settings_.kick = first ? 0.5 * settings_.dt : settings_.dt;
   settings_.history_dt = first ? 0 : settings_.dt;
-  settings_.inner = inner_;
-  settings_.check_near = 2 * near_travel_ >= 0.999 * inner_ && near_travel_ > 0;
   settings_.speed_limit = count_ ? kMaxTravelShare * min_radius_ / settings_.dt : 1;
-  if (settings_.check_near) near_travel_ = 0, ++counters_.near_checks;
   {
     Timer t(counters_.step_seconds);
     advance_chunks();
   }
   ChunkOutcome all;
   for (const ChunkOutcome& o : outcomes_) {
+    counters_.near_checks += o.checked_near;
     all.max_speed = std::max(all.max_speed, o.max_speed);
     all.max_pair_overlap = std::max(all.max_pair_overlap, o.max_pair_overlap);
     all.max_solid_overlap = std::max(all.max_solid_overlap, o.max_solid_overlap);
@@ -157,14 +155,23 @@ void Domain<Real>::step() {
   add_profile(all);
   max_speed_ = all.max_speed;
   max_overlap_ = std::max(2 * all.max_pair_overlap, all.max_solid_overlap);
-  const double way = kWayMargin * max_speed_ * settings_.dt;
-  travel_ += way;
-  near_travel_ += way;
+  travel_ += kWayMargin * max_speed_ * settings_.dt;
+  add_closing();
   ++counters_.steps;
   counters_.particle_steps += count_;
   if (all.too_fast || all.max_pair_overlap > kMaxOverlapShare || all.max_solid_overlap > kMaxOverlapShare)
     fail_step(all);
   if (check_interval_ > 0 && counters_.steps % check_interval_ == 0) check_lists();
+}
+
+// A near pair closes by no more than the ways of the two chunks that it lies in.
+template <class Real>
+void Domain<Real>::add_closing() {
+  for (size_t c = 0; c < contacts_.size(); ++c) {
+    double other = outcomes_[c].max_speed;
+    for (const uint32_t b : contacts_[c].beside) other = std::max(other, outcomes_[b].max_speed);
+    contacts_[c].closing += kWayMargin * (outcomes_[c].max_speed + other) * settings_.dt;
+  }
 }
 
 template <class Real>
@@ -177,9 +184,19 @@ void Domain<Real>::add_profile(const ChunkOutcome& all) {
 // What one chunk's pass reads; the lists and the records that a step writes are not in it.
 template <class Real>
 ChunkTask<Real> Domain<Real>::chunk_task(size_t c, Real* rows) const {
-  return {now_.data(), nullptr,     chunk_begin(c),          chunk_end(c),         count_,
-          nullptr,     &materials_, tables_.segments.view(), tables_.quads.view(), tables_.revolutions.view(),
-          &settings_,  rows};
+  return {now_.data(),
+          nullptr,
+          chunk_begin(c),
+          chunk_end(c),
+          count_,
+          nullptr,
+          &materials_,
+          tables_.segments.view(),
+          tables_.quads.view(),
+          tables_.revolutions.view(),
+          &settings_,
+          false,
+          rows};
 }
 
 template <class Real>
@@ -188,6 +205,8 @@ void Domain<Real>::advance_chunks() {
     alignas(64) thread_local Real rows[(kChunk + 1) * 8];
     ChunkTask<Real> task = chunk_task(c, rows);
     task.new_particles = next_.data(), task.contacts = &contacts_[c];
+    task.check_near = contacts_[c].closing >= 0.999 * contacts_[c].inner && contacts_[c].closing > 0;
+    if (task.check_near) contacts_[c].closing = 0;
     outcomes_[c] = kernels_.step(task);
   });
   now_.swap(next_);

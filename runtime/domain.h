@@ -64,6 +64,8 @@ class Domain final : public Engine {
 
   void rebuild();
   void choose_skin();
+  double inner_skin(size_t chunk) const;
+  void find_chunks_beside(size_t chunk);
   void invalidate_lists();
   void gather_histories();
   Bounds occupied_bounds() const;
@@ -76,6 +78,7 @@ class Domain final : public Engine {
 
   ChunkTask<Real> chunk_task(size_t c, Real* rows) const;
   void advance_chunks();
+  void add_closing();
   void add_profile(const ChunkOutcome& all);
   void book(double& kinetic, double (&momentum)[3], const ParticleState& s) const;
 
@@ -100,9 +103,9 @@ class Domain final : public Engine {
   static void for_each_field(const Visit& visit) {
     visit("count", &Domain::count_), visit("chunk_size", &Domain::chunk_size_), visit("next_id", &Domain::next_id_);
     visit("max_radius", &Domain::max_radius_), visit("min_radius", &Domain::min_radius_);
-    visit("max_speed", &Domain::max_speed_), visit("skin", &Domain::skin_), visit("inner", &Domain::inner_);
-    visit("travel", &Domain::travel_), visit("near_travel", &Domain::near_travel_);
-    visit("lists_valid", &Domain::lists_valid_), visit("counters", &Domain::counters_);
+    visit("max_speed", &Domain::max_speed_), visit("skin", &Domain::skin_);
+    visit("travel", &Domain::travel_), visit("lists_valid", &Domain::lists_valid_),
+        visit("counters", &Domain::counters_);
     visit("solid_identity", &Domain::solid_identity_), visit("contacts", &Domain::contacts_);
     visit("insertions", &Domain::insertions_);
   }
@@ -136,9 +139,8 @@ class Domain final : public Engine {
   std::vector<uint32_t> old_index_;
   std::vector<ChunkOutcome> outcomes_;
 
-  double skin_ = 0, inner_ = 0;
-  double travel_ = 0;       // m, bound on any particle's way since the last rebuild
-  double near_travel_ = 0;  // the same since near pairs were last checked
+  double skin_ = 0;
+  double travel_ = 0;  // m, bound on any particle's way since the last rebuild
   double max_speed_ = 0, max_overlap_ = 0;
   bool lists_valid_ = false;
   std::vector<Insertion> insertions_;

