@@ -60,8 +60,8 @@ class Handle {
 // 1.10). Throws std::bad_alloc where it has no room to work in.
 void require_library_memory();
 
-// Bytes of an array, at most, for each byte of the file that holds it; a claim beyond is corrupt, and no memory is asked
-// for it.
+// Bytes of an array, at most, for each byte of the file that holds it; a claim beyond is corrupt, and no memory is
+// asked for it.
 uint64_t most_expansion(hid_t array);
 
 Handle property_list(hid_t type);

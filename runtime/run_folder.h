@@ -26,8 +26,8 @@ class RunFolder {
   int descriptor_;
 };
 
-// What lies in a folder, sorted by name; nothing where it is not there or cannot be read. (The standard library's own walk
-// ends the process where memory runs out on the way.)
+// What lies in a folder, sorted by name; nothing where it is not there or cannot be read. (The standard library's own
+// walk ends the process where memory runs out on the way.)
 std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
 // Forces a folder's list of names to the disk, which a rename is only then safe on. Throws RunError.
