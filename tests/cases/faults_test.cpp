@@ -11,25 +11,28 @@
 namespace scree {
 namespace {
 
+// A run that ends before its first kill, as on a machine quicker than when the undisturbed run was timed, is tried
+// again with less time.
 TEST_F(Faults, KilledAtAnyMomentTheRunEndsTheSame) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
-  const double whole = 1e3 * read_summary(undisturbed())["wall_time_s"].get<double>();  // ms
+  double longest = 0.8e3 * read_summary(undisturbed())["wall_time_s"].get<double>();  // ms
   const fs::path out = path("killed");
   int kills = 0;
-  for (int code = -SIGKILL; code != 0; kills += code == -SIGKILL) {
+  for (bool done = false; !done;) {
     const std::string threads = std::to_string(1 + kills % 3);
     Process p(run_command(out, {"--resume", "--checkpoint-every", "0.02", "--threads", threads}), path("said"));
     if (kills < 6) {
-      std::this_thread::sleep_for(
-          std::chrono::duration<double, std::milli>(random() * 0x1p-32 * (kills ? 0.8 : 0.4) * whole));
+      std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(random() * 0x1p-32 * longest));
       p.send(SIGKILL);
     }
-    code = p.wait();
+    const int code = p.wait();
     ASSERT_TRUE(code == 0 || code == -SIGKILL) << code << p.said();
+    kills += code == -SIGKILL;
+    done = code == 0 && kills > 0;
+    if (code == 0 && kills == 0) fs::remove_all(out), longest /= 2;
   }
-  EXPECT_GT(kills, 0);
   RecordProperty("kills", kills);
   expect_undisturbed(out);
 }
