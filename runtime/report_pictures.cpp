@@ -1,10 +1,12 @@
 #include "runtime/report_pictures.h"
-#include "runtime/run_folder.h"
 
 #include <algorithm>
 #include <fstream>
 #include <map>
 #include <sstream>
+
+#include "runtime/base64.h"
+#include "runtime/run_folder.h"
 
 namespace scree {
 
@@ -57,19 +59,6 @@ std::vector<fs::path> png_files(const fs::path& folder) {
 }
 
 }  // namespace
-
-std::string base64(std::string_view bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t k = 0; k < bytes.size(); k += 3) {
-    const size_t n = std::min<size_t>(3, bytes.size() - k);
-    uint32_t three = 0;
-    for (size_t j = 0; j < 3; ++j) three = three << 8 | (j < n ? static_cast<unsigned char>(bytes[k + j]) : 0u);
-    for (size_t j = 0; j < 4; ++j) text += j <= n ? kDigits[three >> (18 - 6 * j) & 63] : '=';
-  }
-  return text;
-}
 
 ReportJson pictures_of(const fs::path& folder, const PictureBudget& budget) {
   ReportJson result = ReportJson::array();

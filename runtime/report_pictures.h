@@ -11,6 +11,4 @@ inline constexpr const char* kPictureFolders[] = {"pictures", "averages", "touch
 // {folder, left_out: n} for each folder that holds more than the budget lets in.
 ReportJson pictures_of(const std::filesystem::path& folder, const PictureBudget& budget);
 
-std::string base64(std::string_view bytes);
-
 }  // namespace scree

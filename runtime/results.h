@@ -30,11 +30,26 @@ class CsvWriter {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-// Writes a whole file, to a temporary name first. Throws RunError naming the file and the reason.
+// Writes a whole file, to a temporary name first. Throws as OutputFile does.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-// Particles as VTK PolyData (.vtp, XML, binary): points with radius, velocity, angular_velocity, id, kind, mass. Opens
-// in ParaView (Glyph: sphere, scale by radius) and in OVITO.
+// A file that takes its name only when it is whole. Throws RunError naming the file and the reason.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& path);  // under a temporary name
+  ~OutputFile();                                           // unless finished, nothing stays
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  void write(std::string_view content);
+  void finish();
+
+ private:
+  std::filesystem::path path_, temporary_;
+  std::FILE* file_;
+};
+
+// Particles as VTK PolyData (.vtp, XML): points with radius, velocity, angular_velocity, id, kind, mass. Opens in
+// ParaView (Glyph: sphere, scale by radius). Arrays are base64 in place, uncompressed, as OVITO's reader wants them.
 void write_particles_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles);
 
 // The particles with their centres within `reach` (m) of `where`, the same way.

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <optional>
 
+#include "runtime/base64.h"
 #include "runtime/case_error.h"
 
 namespace scree {
@@ -12,7 +13,8 @@ namespace {
 
 struct Array {
   std::string name, type;
-  size_t components = 1, offset = 0;
+  size_t components = 1;
+  std::string_view text;  // base64
 };
 
 class File {
@@ -21,23 +23,25 @@ class File {
     std::ifstream file(path, std::ios::binary);
     if (!file) fail("cannot be read");
     content_.assign(std::istreambuf_iterator<char>(file), {});
-    const std::string marker = "<AppendedData encoding=\"raw\">";
-    const size_t at = content_.find(marker);
-    const size_t start = at == std::string::npos ? at : content_.find('_', at + marker.size());
-    if (start == std::string::npos) fail("is not VTK PolyData with raw appended data");
-    head_ = std::string_view(content_).substr(0, at), data_ = std::string_view(content_).substr(start + 1);
+    if (content_.find("type=\"PolyData\"") == std::string::npos ||
+        content_.find("format=\"binary\"") == std::string::npos)
+      fail("is not VTK PolyData with arrays in base64");
   }
 
   [[noreturn]] void fail(const std::string& problem) const { throw CaseError({path_.string()}, problem); }
 
   std::vector<Array> arrays() const {
     std::vector<Array> arrays;
-    for (size_t at = 0; (at = head_.find("<DataArray ", at)) != std::string_view::npos; ++at) {
-      const std::string_view tag = head_.substr(at, head_.find('>', at) - at);
-      const std::string components = attribute(tag, "NumberOfComponents").value_or("1");
-      Array array{attribute(tag, "Name").value_or(""), attribute(tag, "type").value_or(""), 0, 0};
-      array.components = number(components), array.offset = number(attribute(tag, "offset").value_or(""));
-      arrays.push_back(array);
+    const std::string_view content(content_);
+    for (size_t at = 0; (at = content.find("<DataArray ", at)) != content.npos;) {
+      const size_t start = content.find('>', at), end = content.find('<', start);
+      const std::string_view tag = content.substr(at, start - at);
+      const std::string name = attribute(tag, "Name").value_or("");
+      if (end == content.npos) fail(fmt::format("array '{}' is cut off", name));
+      arrays.push_back({name, attribute(tag, "type").value_or(""),
+                        number(attribute(tag, "NumberOfComponents").value_or("1")),
+                        content.substr(start + 1, end - start - 1)});
+      at = end;
     }
     return arrays;
   }
@@ -53,7 +57,7 @@ class File {
     fail(fmt::format("array '{}' is of type {}, which is not known here", array.name, array.type));
   }
 
-  size_t points() const { return number(attribute(head_, "NumberOfPoints").value_or("")); }
+  size_t points() const { return number(attribute(content_, "NumberOfPoints").value_or("")); }
 
  private:
   static std::optional<std::string> attribute(std::string_view tag, const std::string& name) {
@@ -72,14 +76,15 @@ class File {
   std::vector<T> converted(const Array& array, size_t count) const {
     uint64_t size = 0;
     const size_t wanted = count * array.components * sizeof(Stored);
-    if (array.offset + sizeof size > data_.size()) fail(fmt::format("array '{}' is cut off", array.name));
-    std::memcpy(&size, data_.data() + array.offset, sizeof size);
-    if (size != wanted || array.offset + sizeof size + wanted > data_.size())
+    const std::optional<std::string> bytes = from_base64(array.text);
+    if (!bytes) fail(fmt::format("array '{}' is not base64", array.name));
+    if (bytes->size() >= sizeof size) std::memcpy(&size, bytes->data(), sizeof size);
+    if (size != wanted || bytes->size() != sizeof size + wanted)
       fail(fmt::format("array '{}' is cut off, or not of {} points", array.name, count));
     std::vector<T> values(count * array.components);
     for (size_t k = 0; k < values.size(); ++k) {
       Stored value;
-      std::memcpy(&value, data_.data() + array.offset + sizeof size + k * sizeof value, sizeof value);
+      std::memcpy(&value, bytes->data() + sizeof size + k * sizeof value, sizeof value);
       values[k] = static_cast<T>(value);
     }
     return values;
@@ -87,7 +92,6 @@ class File {
 
   std::filesystem::path path_;
   std::string content_;
-  std::string_view head_, data_;
 };
 
 }  // namespace

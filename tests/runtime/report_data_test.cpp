@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "runtime/base64.h"
 #include "runtime/report.h"
 #include "runtime/report_pictures.h"
 #include "tests/runtime/case_text.h"
@@ -23,7 +24,11 @@ TEST(ReportData, base64_as_in_rfc_4648) {
                                                           {"fooba", "Zm9vYmE="},
                                                           {"foobar", "Zm9vYmFy"},
                                                           {"\xff\xfe\xfd", "//79"}};
-  for (const auto& [bytes, text] : examples) EXPECT_EQ(base64(bytes), text);
+  for (const auto& [bytes, text] : examples) {
+    EXPECT_EQ(base64(bytes), text);
+    EXPECT_EQ(from_base64(text), bytes);
+  }
+  for (const char* foreign : {"Zg=", "Z?==", "Zm9", "=m8=", "Zm 9"}) EXPECT_EQ(from_base64(foreign), std::nullopt);
 }
 
 TEST(ReportData, a_table_is_its_columns_and_text_stays_text) {
