@@ -144,7 +144,7 @@ Primitives frustum(const Frustum& shape, const SurfaceLabel& label) {
   require_finite("z0", shape.z0);
   require_finite("z1", shape.z1);
   require(shape.z1 > shape.z0, "z1", shape.z1, "m", fmt::format("above z0 = {:g} m", shape.z0));
-  constexpr double kSideX[] = {-0.5, 0.5, 0.5, -0.5}, kSideY[] = {-0.5, -0.5, 0.5, 0.5};
+  static constexpr double kSideX[] = {-0.5, 0.5, 0.5, -0.5}, kSideY[] = {-0.5, -0.5, 0.5, 0.5};
   const auto corner = [&](int k, double z, double side_x, double side_y) {
     return Vec3{shape.centre_x + kSideX[k % 4] * side_x, shape.centre_y + kSideY[k % 4] * side_y, z};
   };

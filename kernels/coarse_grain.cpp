@@ -108,9 +108,9 @@ bool within(double x, double from, double edge, int cells) { return x >= from &&
 
 Vec3 CoarseGrid::centre(size_t cell) const {
   const size_t nx = cells[0], ny = cells[1];
-  const double i = static_cast<double>(cell % nx), j = static_cast<double>(cell / nx % ny),
-               k = static_cast<double>(cell / (nx * ny));
-  return origin + Vec3{(i + 0.5) * spacing.x, (j + 0.5) * spacing.y, (k + 0.5) * spacing.z};
+  const size_t i = cell % nx, j = cell / nx % ny, k = cell / (nx * ny);
+  const auto middle = [](size_t number, double edge) { return (static_cast<double>(number) + 0.5) * edge; };
+  return origin + Vec3{middle(i, spacing.x), middle(j, spacing.y), middle(k, spacing.z)};
 }
 
 bool CoarseGrid::holds(const Vec3& x) const {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kMostTables = 10000;  // of one kind: each is compared with all before it, and a person wrote them
 
-std::string shortened(std::string text) { return text.size() <= 80 ? text : text.substr(0, 77) + "..."; }
+std::string shortened(const std::string& text) { return text.size() <= 80 ? text : text.substr(0, 77) + "..."; }
 
 CaseNode node_of(double value) { return {value, {}, {}}; }
 CaseNode node_of(const std::string& value) { return {value, {}, {}}; }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/result_folder.h"
 #include "runtime/results.h"
 #include "runtime/run_folder.h"
 #include "runtime/timer.h"
@@ -57,9 +58,7 @@ void FrameFiles::prepare() {
 
 void FrameFiles::write(uint64_t step, double time, Fill fill) {
   prepare();
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) fail(folder_, error.message());
+  make_folder(folder_);
   if (!frames_.empty() && frames_.back().step == step) frames_.pop_back();
   const Frame frame = frames_.emplace_back(Frame{step, time});
   unforced_.push_back(path_of(frame));
@@ -68,23 +67,15 @@ void FrameFiles::write(uint64_t step, double time, Fill fill) {
 
 void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
   const Timer timer(seconds_);
-  const fs::path path = path_of(frame), part = path.string() + ".part";
-  try {
-    VtkHdfFile file(part, type_);
+  const fs::path path = path_of(frame);
+  write_vtkhdf(path, type_, [&](VtkHdfFile& file) {
     const int64_t step = static_cast<int64_t>(frame.step);
     file.array("FieldData/time", std::span<const double>(&frame.time, 1));
     file.array("FieldData/step", std::span<const int64_t>(&step, 1));
     fill(file);
-    file.close();
-    fs::rename(part, path);
-    bytes_ += fs::file_size(path);
-  } catch (const Hdf5Error& e) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    fail(path, e.what());
-  } catch (const fs::filesystem_error& e) {
-    fail(path, e.code().message());
-  }
+  });
+  std::error_code error;
+  if (const uintmax_t size = fs::file_size(path, error); !error) bytes_ += size;
   if (!written_.empty() && written_.back().step == frame.step) written_.pop_back();
   written_.push_back(frame);
   if (written_.size() % (1 + written_.size() / kFramesPerSeries) == 0) write_series();

@@ -196,9 +196,7 @@ void add_run_options(CLI::App& command, Arguments& a) {
   command.add_flag("--profile", a.profile, "print at the end where the time went, part by part of the step");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int command_line(int argc, char** argv) {
   CLI::App app{
       "Scree: discrete element simulation of granular flow.\n\n"
       "A case file says what is simulated: materials, particles, walls and fibres, and the stages\n"
@@ -253,11 +251,22 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& e) {
     fmt::print(stderr, "scree: {}\n", e.what());
     return kBadInput;
-  } catch (const std::bad_alloc&) {
-    std::fputs("scree: out of memory\n", stderr);  // with nothing allocated for saying so
-    return kFailed;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "scree: {}\n", e.what());
-    return kFailed;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const char* why = "an error of unknown kind";
+  try {
+    return command_line(argc, argv);
+  } catch (const std::bad_alloc&) {
+    why = "out of memory";  // with nothing allocated for saying so
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "scree: %s\n", e.what());
+    return kFailed;
+  } catch (...) {
+  }
+  std::fprintf(stderr, "scree: %s\n", why);
+  return kFailed;
 }

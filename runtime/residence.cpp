@@ -40,8 +40,10 @@ double ResidenceTimes::mean() const {
 double ResidenceTimes::quantile(double share) const {
   const double wanted = share * mass();
   double sum = 0;
-  for (const auto& [time, mass] : taken)
-    if ((sum += mass) >= wanted) return time;
+  for (const auto& [time, mass] : taken) {
+    sum += mass;
+    if (sum >= wanted) return time;
+  }
   return taken.back().first;
 }
 
