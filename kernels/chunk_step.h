@@ -9,34 +9,46 @@
 
 namespace scree {
 
-// Moves near pairs that have come within `inner` of touching into active blocks.
-template <class L>
-inline void promote_near_pairs(const ChunkTask<typename L::Real>& task) {
+// Takes out of `waiting` the pairs that are nearer than `gap` to touching and gives each to `take`.
+template <class L, class Take>
+inline void give_up_closer(const ChunkTask<typename L::Real>& task, std::vector<WaitingPair>& waiting, double gap,
+                           const Take& take) {
   using F = typename L::F;
   using D = typename L::D;
-  auto& near = task.contacts->near;
   const StepSettings& settings = *task.settings;
   const bool wraps = task.contacts->first_wrapping != task.contacts->kNoBlock;
   size_t kept = 0;
-  for (size_t first = 0; first < near.size(); first += L::width) {
+  for (size_t first = 0; first < waiting.size(); first += L::width) {
     uint32_t i[L::width], j[L::width];
     for (int k = 0; k < L::width; ++k) {
-      const bool real = first + k < near.size();
-      i[k] = real ? near[first + k].i : task.count, j[k] = real ? near[first + k].j : task.count + 1;
+      const bool real = first + k < waiting.size();
+      i[k] = real ? waiting[first + k].i : task.count, j[k] = real ? waiting[first + k].j : task.count + 1;
     }
     const Bodies<L> a = gather_bodies<L>(task.old_particles, i), b = gather_bodies<L>(task.old_particles, j);
     Vec<D> d = a.position - b.position;
     if (wraps) d = minimum_image(d, settings.period, settings.inverse_period);
-    const D reach = L::widen(a.radius) + L::widen(b.radius) + D(task.contacts->inner);
+    const D reach = L::widen(a.radius) + L::widen(b.radius) + D(gap);
     const unsigned close = L::bits(L::narrow(fma(reach, reach, -dot(d, d))) >= F(0));
-    for (int k = 0; k < L::width && first + k < near.size(); ++k) {
+    for (int k = 0; k < L::width && first + k < waiting.size(); ++k) {
       if (close >> k & 1u)
-        task.contacts->append(i[k], j[k]);
+        take(i[k], j[k]);
       else
-        near[kept++] = {i[k], j[k]};
+        waiting[kept++] = {i[k], j[k]};
     }
   }
-  near.resize(kept);
+  waiting.resize(kept);
+}
+
+// Moves waiting pairs that have come closer one list on, or into the blocks.
+template <class L>
+inline void promote_waiting_pairs(const ChunkTask<typename L::Real>& task) {
+  auto& contacts = *task.contacts;
+  if (task.look == Look::all)
+    give_up_closer<L>(task, contacts.far, contacts.middle, [&](uint32_t i, uint32_t j) {
+      contacts.near.push_back({i, j});
+    });
+  if (task.look != Look::none)
+    give_up_closer<L>(task, contacts.near, contacts.inner, [&](uint32_t i, uint32_t j) { contacts.append(i, j); });
 }
 
 // A kick's work by gravity, and what contact forces do beyond their power at the old velocity times the kick.
@@ -113,8 +125,8 @@ ChunkOutcome step_chunk(const ChunkTask<typename L::Real>& task) {
   using Real = typename L::Real;
   ChunkOutcome outcome;
   PartClock clock(task.settings->profile, outcome);
-  if (task.check_near) promote_near_pairs<L>(task);
-  outcome.checked_near = task.check_near;
+  promote_waiting_pairs<L>(task);
+  outcome.checked_near = task.look != Look::none;
   clock.ends(StepPart::near_check);
   std::memset(task.rows, 0, (task.end - task.begin + 1) * size_t{8} * sizeof(Real));
   const PassOutcome pairs = pair_pass<L, Traits>(task);

@@ -1,6 +1,8 @@
 // What a step needs to know, and what one chunk of it works on.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "geometry/closest_point.h"
@@ -13,7 +15,7 @@ namespace scree {
 
 // A primitive of the solid, prepared. In double it is a row of a table that lanes load four doubles at a time.
 template <template <class> class Skeleton, class T>
-struct alignas(32) Rounded {
+struct alignas(std::max<size_t>(32, alignof(Skeleton<T>))) Rounded {
   Skeleton<T> skeleton;
   T radius;
 };
@@ -54,8 +56,8 @@ struct ChunkTask {
   SkeletonTable<QuadOf, Real> quads;
   SkeletonTable<RevolutionOf, Real> revolutions;
   const StepSettings* settings;
-  bool check_near;  // promote near pairs before the forces
-  Real* rows;       // scratch: (chunk + 1) rows of eight: force, torque, -, -; the last row collects what is not ours
+  Look look;   // at waiting pairs, before the forces
+  Real* rows;  // scratch: (chunk + 1) rows of eight: force, torque, -, -; the last row collects what is not ours
 };
 
 }  // namespace scree

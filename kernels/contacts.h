@@ -6,8 +6,9 @@
 //      chunk A           chunk B          stored in A: (1,2) (2,5)    in B: (5,2) (5,6)
 //    [ 1 . 2 ] ------- [ 5 . 6 ]
 //
-// Near pairs (within the outer skin, not the inner) wait in `near` and are promoted to blocks as they approach: looked
-// through when the speeds of this chunk and of those beside it could have closed the inner skin.
+// Pairs that are listed but too far apart to touch soon wait in `near`, and those further apart yet in `far`. Each list
+// is looked through when the speeds of this chunk and of those beside it could have closed the gap that all its pairs
+// had when it last was, and gives up those that have come closer: the short list often, the long one seldom.
 #pragma once
 
 #include <cstddef>
@@ -28,9 +29,12 @@ struct alignas(64) PairBlock {
   Real history[6][kBlock];  // tangential displacement x y z (m), rolling torque x y z (N m); zero when not touching
 };
 
-struct NearPair {
+struct WaitingPair {
   uint32_t i, j;
 };
+
+// Which lists of waiting pairs a step looks through before its forces.
+enum class Look : uint8_t { none, near, all };
 
 // Sixteen particles, each with up to `slots` solid primitives near it. One block's slots hold one kind of skeleton
 // each, in the order segments, quads, revolutions; padding names the kind's dummy primitive, far away.
@@ -59,20 +63,30 @@ struct ChunkContacts {
   // the minimum image.
   size_t first_wrapping = kNoBlock;
   static constexpr size_t kNoBlock = ~size_t{0};
-  std::vector<NearPair> near;
-  std::vector<uint32_t> beside;  // other chunks that near pairs reach into
-  double inner = 0;              // m: a near pair closer than this becomes active
-  double closing = 0;            // m, bound on any near pair's approach since they were last looked through
+  std::vector<WaitingPair> near, far;
+  std::vector<uint32_t> beside;  // other chunks that waiting pairs reach into
+  double inner = 0, middle = 0;  // m beyond touching: closer pairs are active; closer pairs are not in `far`
+  double near_closing = 0, far_closing = 0;  // m, bounds on any approach since the list was last looked through
   std::vector<SolidBlock> solid_blocks;
   std::vector<SolidSlot<Real>> slots;
 
   // Empties the lists; they are now of particles first..last - 1.
   void clear(uint32_t first, uint32_t last, uint32_t dummy_particle) {
-    blocks.clear(), near.clear(), beside.clear(), solid_blocks.clear(), slots.clear();
-    inner = closing = 0;
+    blocks.clear(), near.clear(), far.clear(), beside.clear(), solid_blocks.clear(), slots.clear();
+    inner = middle = near_closing = far_closing = 0;
     pairs = 0, first_wrapping = kNoBlock;
     begin = first, end = last, dummy = dummy_particle;
   }
+  void add_way(double way) { near_closing += way, far_closing += way; }
+  // What the next step must look through; counts from there anew.
+  Look take_look() {
+    const auto due = [](double closing, double gap) { return closing > 0 && closing >= 0.999 * gap; };
+    const Look look = due(far_closing, middle) ? Look::all : due(near_closing, inner) ? Look::near : Look::none;
+    if (look != Look::none) near_closing = 0;
+    if (look == Look::all) far_closing = 0;
+    return look;
+  }
+
   uint32_t pair_i(uint32_t k) const { return begin + blocks[k / kBlock].i[k % kBlock]; }
   uint32_t pair_j(uint32_t k) const { return blocks[k / kBlock].j[k % kBlock]; }
 
@@ -96,14 +110,15 @@ struct ChunkContacts {
     visit("begin", &ChunkContacts::begin), visit("end", &ChunkContacts::end), visit("dummy", &ChunkContacts::dummy);
     visit("blocks", &ChunkContacts::blocks), visit("first_wrapping", &ChunkContacts::first_wrapping);
     visit("pairs", &ChunkContacts::pairs);
-    visit("near", &ChunkContacts::near), visit("beside", &ChunkContacts::beside);
-    visit("inner", &ChunkContacts::inner), visit("closing", &ChunkContacts::closing);
+    visit("near", &ChunkContacts::near), visit("far", &ChunkContacts::far), visit("beside", &ChunkContacts::beside);
+    visit("inner", &ChunkContacts::inner), visit("middle", &ChunkContacts::middle);
+    visit("near_closing", &ChunkContacts::near_closing), visit("far_closing", &ChunkContacts::far_closing);
     visit("solid_blocks", &ChunkContacts::solid_blocks);
     visit("slots", &ChunkContacts::slots);
   }
 
   size_t bytes() const {
-    return blocks.capacity() * sizeof(blocks[0]) + near.capacity() * sizeof(near[0]) +
+    return blocks.capacity() * sizeof(blocks[0]) + (near.capacity() + far.capacity()) * sizeof(near[0]) +
            beside.capacity() * sizeof(beside[0]) + solid_blocks.capacity() * sizeof(solid_blocks[0]) +
            slots.capacity() * sizeof(slots[0]);
   }

@@ -1,4 +1,5 @@
-// Finds the pairs of one chunk: active ones into blocks with their carried history, the rest of the skin into `near`.
+// Finds the pairs of one chunk: active ones into blocks with their carried history, the rest of the skin into the lists
+// of waiting pairs.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +19,8 @@ struct SearchTask {
   const Particle<Real>* particles;  // in Morton order
   uint32_t begin, end, count;
   const CellGrid* grid;
-  double skin, inner;         // m, beyond touching: listed, active
-  const uint32_t* old_index;  // of each particle, for the history
+  double skin, middle, inner;  // m, beyond touching: listed, near, active
+  const uint32_t* old_index;   // of each particle, for the history
   const HistoryTable<Real>* history;
   ChunkContacts<Real>* contacts;  // cleared by the caller
 };
@@ -113,13 +114,13 @@ class Candidates {
 // Pairs through a periodic border wait until a chunk's other pairs are listed: they come last.
 struct WrappingPair {
   uint32_t i, j;
-  bool active;
+  bool active, near;
 };
 
 template <class L>
-inline void emit_pair(const SearchTask<typename L::Real>& task, uint32_t i, uint32_t j, bool active) {
+inline void emit_pair(const SearchTask<typename L::Real>& task, uint32_t i, uint32_t j, bool active, bool near) {
   if (!active) {
-    task.contacts->near.push_back({i, j});
+    (near ? task.contacts->near : task.contacts->far).push_back({i, j});
     return;
   }
   auto& block = task.contacts->append(i, j);
@@ -137,25 +138,29 @@ inline void search_particle(const SearchTask<typename L::Real>& task, const Cand
   const F x(static_cast<float>(p.x - centre.x)), y(static_cast<float>(p.y - centre.y)),
       z(static_cast<float>(p.z - centre.z));
   const float radius = static_cast<float>(p.radius);
-  const F outer(static_cast<float>(radius + task.skin)), inner(static_cast<float>(radius + task.inner));
+  const F outer(static_cast<float>(radius + task.skin)), middle(static_cast<float>(radius + task.middle)),
+      inner(static_cast<float>(radius + task.inner));
   const F margin(1 + kSearchMargin);
   for (int row = 0; row < 9; ++row) {
     const auto [begin, end] = c.run(cell, row % 3 - 1, row / 3 - 1);
     for (uint32_t k = begin; k < end; k += S::width) {
       const Vec<F> d{x - S::load(&c.x[k]), y - S::load(&c.y[k]), z - S::load(&c.z[k])};
       const F distance2 = dot(d, d), other = S::load(&c.radius[k]);
-      const F outer_reach = (outer + other) * margin, inner_reach = (inner + other) * margin;
-      unsigned listed = S::bits(distance2 <= outer_reach * outer_reach);
+      const auto within = [&](const F& gap) {
+        const F reach = (gap + other) * margin;
+        return S::bits(distance2 <= reach * reach);
+      };
+      unsigned listed = within(outer);
       if (end - k < S::width) listed &= (1u << (end - k)) - 1;
       if (listed == 0) continue;
-      const unsigned active = S::bits(distance2 <= inner_reach * inner_reach);
+      const unsigned near = within(middle), active = within(inner);
       for (; listed != 0; listed &= listed - 1) {
         const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(listed)), j = c.index[k + lane];
         if (j <= i && j >= task.begin) continue;
         if (c.wraps[k + lane])
-          wrapping.push_back({i, j, (active >> lane & 1u) != 0});
+          wrapping.push_back({i, j, (active >> lane & 1u) != 0, (near >> lane & 1u) != 0});
         else
-          emit_pair<L>(task, i, j, active >> lane & 1u);
+          emit_pair<L>(task, i, j, active >> lane & 1u, near >> lane & 1u);
       }
     }
   }
@@ -194,7 +199,7 @@ void search_chunk(const SearchTask<typename L::Real>& task) {
   }
   if (wrapping.empty()) return;
   task.contacts->first_wrapping = task.contacts->pairs / kBlock;
-  for (const WrappingPair& p : wrapping) emit_pair<L>(task, p.i, p.j, p.active);
+  for (const WrappingPair& p : wrapping) emit_pair<L>(task, p.i, p.j, p.active, p.near);
 }
 
 }  // namespace scree

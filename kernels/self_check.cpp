@@ -23,8 +23,8 @@ std::vector<Particle<float>> heap() {
   for (uint32_t k = 0; k < kCount; ++k) {
     Particle<float>& p = particles[k];
     const double pitch = 1.99 * kRadius;
-    p.x = pitch * (k % kSide) + some(1e-6f), p.y = pitch * (k / kSide % kSide) + some(1e-6f);
-    p.z = pitch * (k / kSide / kSide) + some(1e-6f);
+    const uint32_t row = k / kSide % kSide, layer = k / kSide / kSide;
+    p.x = pitch * (k % kSide) + some(1e-6f), p.y = pitch * row + some(1e-6f), p.z = pitch * layer + some(1e-6f);
     p.tag = Particle<float>::make_tag(0, k);
     p.vx = some(0.3f), p.vy = some(0.3f), p.vz = some(0.3f);
     p.wx = some(500), p.wy = some(500), p.wz = some(500);
@@ -40,7 +40,7 @@ ChunkContacts<float> neighbours() {
   for (uint32_t k = 0; k < kCount; ++k) {
     if (k % kSide + 1 < kSide) contacts.append(k, k + 1);
     if (k / kSide % kSide + 1 < kSide) contacts.append(k, k + kSide);
-    if (k + kSide * kSide < kCount) contacts.near.push_back({k, k + kSide * kSide});
+    if (k + kSide * kSide < kCount) (k % 2 ? contacts.near : contacts.far).push_back({k, k + kSide * kSide});
   }
   return contacts;
 }
@@ -80,7 +80,7 @@ Outcome stepped(const StepKernels<float>& kernels, bool uniform) {
                   {},
                   {},
                   &settings,
-                  true,
+                  Look::all,
                   storage.data() + off});
     std::swap(o.particles, next);
   }

@@ -41,7 +41,7 @@ struct ChunkOutcome {
   double max_pair_overlap = 0;      // share of the sum of the radii
   double max_solid_overlap = 0;     // share of R_i
   StepLedger ledger;                // J, N s; zero without a ledger
-  bool checked_near = false;        // near pairs were looked through
+  bool checked_near = false;        // waiting pairs were looked through
   bool too_fast = false;            // a speed above the limit, or NaN
   double seconds[kStepParts] = {};  // by StepPart, of the thread that did it; only in a profile
 };

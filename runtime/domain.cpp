@@ -164,13 +164,13 @@ void Domain<Real>::step() {
   if (check_interval_ > 0 && counters_.steps % check_interval_ == 0) check_lists();
 }
 
-// A near pair closes by no more than the ways of the two chunks that it lies in.
+// A waiting pair closes by no more than the ways of the two chunks that it lies in.
 template <class Real>
 void Domain<Real>::add_closing() {
   for (size_t c = 0; c < contacts_.size(); ++c) {
     double other = outcomes_[c].max_speed;
     for (const uint32_t b : contacts_[c].beside) other = std::max(other, outcomes_[b].max_speed);
-    contacts_[c].closing += kWayMargin * (outcomes_[c].max_speed + other) * settings_.dt;
+    contacts_[c].add_way(kWayMargin * (outcomes_[c].max_speed + other) * settings_.dt);
   }
 }
 
@@ -195,7 +195,7 @@ ChunkTask<Real> Domain<Real>::chunk_task(size_t c, Real* rows) const {
           tables_.quads.view(),
           tables_.revolutions.view(),
           &settings_,
-          false,
+          Look::none,
           rows};
 }
 
@@ -205,8 +205,7 @@ void Domain<Real>::advance_chunks() {
     alignas(64) thread_local Real rows[(kChunk + 1) * 8];
     ChunkTask<Real> task = chunk_task(c, rows);
     task.new_particles = next_.data(), task.contacts = &contacts_[c];
-    task.check_near = contacts_[c].closing >= 0.999 * contacts_[c].inner && contacts_[c].closing > 0;
-    if (task.check_near) contacts_[c].closing = 0;
+    task.look = contacts_[c].take_look();
     outcomes_[c] = kernels_.step(task);
   });
   now_.swap(next_);
@@ -280,7 +279,8 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
       if (overlap > 0) result.push_back({a.id, b.id, overlap});
     };
     for (uint32_t k = 0; k < contacts_[c].pairs; ++k) look(contacts_[c].pair_i(k), contacts_[c].pair_j(k));
-    for (const NearPair& n : contacts_[c].near) look(n.i, n.j);
+    for (const WaitingPair& w : contacts_[c].near) look(w.i, w.j);
+    for (const WaitingPair& w : contacts_[c].far) look(w.i, w.j);
   }
   return result;
 }

@@ -64,7 +64,7 @@ class Domain final : public Engine {
 
   void rebuild();
   void choose_skin();
-  double inner_skin(size_t chunk) const;
+  void choose_gaps(size_t chunk);
   void find_chunks_beside(size_t chunk);
   void invalidate_lists();
   void gather_histories();

@@ -28,7 +28,8 @@ bool is_sound(const ChunkHistory<Real>& history, uint32_t rows) {
 template <class Real>
 bool pairs_are_sound(const ChunkContacts<Real>& c, uint32_t count, size_t chunks) {
   const uint32_t size = c.end - c.begin;
-  if (!all_finite({c.inner, c.closing}) || c.inner < 0 || c.closing < 0) return false;
+  for (const double d : {c.inner, c.middle, c.near_closing, c.far_closing})
+    if (!std::isfinite(d) || d < 0) return false;
   if (std::ranges::any_of(c.beside, [&](uint32_t b) { return b >= chunks; })) return false;
   if (c.blocks.size() != (size_t{c.pairs} + kBlock - 1) / kBlock) return false;
   for (const PairBlock<Real>& b : c.blocks)
@@ -38,8 +39,8 @@ bool pairs_are_sound(const ChunkContacts<Real>& c, uint32_t count, size_t chunks
     }
   for (uint32_t k = 0; k < c.pairs; ++k)
     if (c.pair_j(k) >= count) return false;
-  return std::ranges::all_of(
-      c.near, [&](const NearPair& n) { return n.i >= c.begin && n.i < c.end && n.j < count && n.i != n.j; });
+  const auto ours = [&](const WaitingPair& w) { return w.i >= c.begin && w.i < c.end && w.j < count && w.i != w.j; };
+  return std::ranges::all_of(c.near, ours) && std::ranges::all_of(c.far, ours);
 }
 
 template <class Real>

@@ -20,8 +20,9 @@ namespace {
 // The outer skin lasts kStepsPerRebuild steps at that speed. The inner one weighs the pairs that are evaluated without
 // touching (more with a wider skin) against the checks of those that wait (more often with a narrower one): the best
 // grows with the square root of the way per step.
-constexpr double kStepsPerRebuild = 40, kSkinLeast = 0.2, kSkinMost = 1.2;
-constexpr double kInnerPerRootWay = 0.4, kInnerLeast = 0.004, kInnerMost = 0.1;
+constexpr double kStepsPerRebuild = 60, kSkinLeast = 0.2, kSkinMost = 1.2;
+constexpr double kInnerPerRootWay = 0.2, kInnerLeast = 0.004, kInnerMost = 0.1;
+constexpr double kMiddleShare = 0.6;  // between `near` and `far`, of the inner and the outer skin's geometric mean
 constexpr uint32_t kSmallestChunk = 256;
 constexpr uint32_t kWantedChunks = 64;  // small runs get smaller chunks, so that several threads find work
 
@@ -67,29 +68,32 @@ void Domain<Real>::choose_skin() {
   if (skin_ <= 0) throw RunError("a periodic axis is shorter than twice the largest diameter");
 }
 
-// The inner skin of a chunk, from the fastest of its particles.
+// The gaps that tell a chunk's lists of pairs apart, from the fastest of its particles.
 template <class Real>
-double Domain<Real>::inner_skin(size_t chunk) const {
+void Domain<Real>::choose_gaps(size_t chunk) {
   double speed2 = 0;
   for (uint32_t k = chunk_begin(chunk); k < chunk_end(chunk); ++k) {
     const Particle<Real>& p = now_[k];
     const Vec<double> v{p.vx, p.vy, p.vz};
     speed2 = std::max(speed2, dot(v, v));
   }
+  ChunkContacts<Real>& list = contacts_[chunk];
   const double way = 2 * std::sqrt(speed2) * settings_.dt / max_radius_;
-  return std::min(std::clamp(kInnerPerRootWay * std::sqrt(way), kInnerLeast, kInnerMost) * max_radius_, skin_);
+  list.inner = std::min(std::clamp(kInnerPerRootWay * std::sqrt(way), kInnerLeast, kInnerMost) * max_radius_, skin_);
+  list.middle = std::max(list.inner, kMiddleShare * std::sqrt(list.inner * skin_));
 }
 
 template <class Real>
 void Domain<Real>::find_chunks_beside(size_t chunk) {
   std::vector<uint32_t>& beside = contacts_[chunk].beside;
   uint32_t last = static_cast<uint32_t>(chunk);
-  for (const NearPair& n : contacts_[chunk].near) {
-    const uint32_t other = n.j / chunk_size_;
-    if (other == chunk || other == last) continue;
-    last = other;
-    if (std::find(beside.begin(), beside.end(), other) == beside.end()) beside.push_back(other);
-  }
+  for (const auto* list : {&contacts_[chunk].near, &contacts_[chunk].far})
+    for (const WaitingPair& pair : *list) {
+      const uint32_t other = pair.j / chunk_size_;
+      if (other == chunk || other == last) continue;
+      last = other;
+      if (std::find(beside.begin(), beside.end(), other) == beside.end()) beside.push_back(other);
+    }
 }
 
 // Takes the histories out of the lists; they wait in history_ for the next rebuild.
@@ -222,9 +226,9 @@ void Domain<Real>::search_pairs() {
   outcomes_.resize(chunks());
   parallel_for(chunks(), [&](size_t c) {
     contacts_[c].clear(chunk_begin(c), chunk_end(c), count_);
-    contacts_[c].inner = inner_skin(c);
-    kernels_.search({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, skin_, contacts_[c].inner,
-                     old_index_.data(), &history_, &contacts_[c]});
+    choose_gaps(c);
+    kernels_.search({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, skin_, contacts_[c].middle,
+                     contacts_[c].inner, old_index_.data(), &history_, &contacts_[c]});
     find_chunks_beside(c);
   });
 }

@@ -296,12 +296,11 @@ TEST(Neighbours, AfterInsertionsAndRemovalsAreAllFound) {
   EXPECT_EQ(engine->count() + engine->counters().removed, 1200u);
 }
 
-// ---- the search alone: what is listed, active or near, and where
-// --------------------------------------------------------
+// ---- the search alone: what is listed, active, near or far, and where
 
 struct Listed {
   std::map<std::pair<uint32_t, uint32_t>, std::set<uint32_t>> owners;  // pair of indices, the chunks that list it
-  std::map<std::pair<uint32_t, uint32_t>, size_t> active;              // by how many chunks
+  std::map<std::pair<uint32_t, uint32_t>, size_t> active, far;         // by how many chunks
 };
 
 struct SearchScene {
@@ -310,6 +309,7 @@ struct SearchScene {
   Bounds box;
   double skin, inner;
   uint32_t chunk;
+  double middle() const { return 0.5 * (skin + inner); }
 
   Listed search(const std::string& isa) {
     CellGrid grid;
@@ -332,8 +332,8 @@ struct SearchScene {
       ChunkContacts<float> contacts;
       contacts.clear(begin, std::min(count, begin + chunk), count);
       const uint32_t end = std::min(count, begin + chunk);
-      kernels.search(
-          {particles.data(), begin, end, count, &grid, skin, inner, old_index.data(), &no_history, &contacts});
+      kernels.search({particles.data(), begin, end, count, &grid, skin, middle(), inner, old_index.data(), &no_history,
+                      &contacts});
       const auto take = [&](uint32_t i, uint32_t j) {
         EXPECT_TRUE(i >= begin && i < end);
         EXPECT_TRUE(j > i || j < begin);
@@ -350,7 +350,11 @@ struct SearchScene {
             EXPECT_LT(std::abs((&particles[i].x)[a] - (&particles[j].x)[a]), period[a] > 0 ? 0.5 * period[a] : 1e9);
         }
       }
-      for (const NearPair& pair : contacts.near) take(pair.i, pair.j);
+      for (const WaitingPair& pair : contacts.near) take(pair.i, pair.j);
+      for (const WaitingPair& pair : contacts.far) {
+        take(pair.i, pair.j);
+        ++result.far[std::minmax(pair.i, pair.j)];
+      }
       for (uint32_t k = contacts.pairs; k < contacts.blocks.size() * kBlock; ++k) {
         EXPECT_EQ(contacts.pair_i(k), begin);
         EXPECT_EQ(contacts.pair_j(k), count);
@@ -392,6 +396,10 @@ void expect_search_right(SearchScene scene, const std::string& what) {
         const size_t active_owners = active == listed.active.end() ? 0 : active->second;
         ASSERT_TRUE(active_owners == owners.size() || gap > scene.inner) << what << ", " << isa;
         ASSERT_TRUE(active_owners == 0 || gap <= scene.inner + extra) << what << ", " << isa;
+        const auto far = listed.far.find({a, b});
+        const size_t far_owners = far == listed.far.end() ? 0 : far->second;
+        ASSERT_TRUE(far_owners == 0 || gap > scene.middle() - extra) << what << ", " << isa;
+        ASSERT_TRUE(far_owners == owners.size() || gap <= scene.middle() + extra || gap > scene.skin) << what;
       }
     EXPECT_GT(wanted, 0u);
   }
