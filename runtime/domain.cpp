@@ -245,7 +245,7 @@ double Domain<Real>::sum(const std::function<double(const ParticleState&)>& f) c
 template <class Real>
 std::vector<ParticleState> Domain<Real>::particles() const {
   std::vector<ParticleState> result(count_);
-  for (size_t k = 0; k < count_; ++k) result[k] = state(k);
+  parallel_for_each(count_, [&](size_t k) { result[k] = state(k); });
   return result;
 }
 

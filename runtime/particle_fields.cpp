@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "kernels/parallel.h"
 #include "runtime/case_physics.h"
 #include "runtime/contact_sums.h"
 
@@ -21,12 +22,13 @@ template <class T, class Get>
 Column column(const char* name, uint64_t components, size_t count, const Get& get) {
   const uint64_t per_row = std::max<uint64_t>(components, 1);
   Column c{name, element_type<T>(), components, std::vector<char>(count * per_row * sizeof(T))};
-  char* to = c.values.data();
-  for (size_t k = 0; k < count; ++k)
+  parallel_for_each(count, [&](size_t k) {
+    char* to = c.values.data() + k * per_row * sizeof(T);
     for (uint64_t i = 0; i < per_row; ++i, to += sizeof(T)) {
       const T value = static_cast<T>(get(k, i));
       std::memcpy(to, &value, sizeof(T));
     }
+  });
   return c;
 }
 

@@ -17,6 +17,13 @@ constexpr uint64_t kPieceRows = 65536;  // of an array, compressed together
 constexpr int kLevel = 1;               // of 12: what is left of the digits of a grain's velocity is noise to all
 constexpr uint8_t kVertex = 1;          // VTK's number for it
 
+// What the shuffle filter does: first bytes of all elements, then second bytes, ...
+template <size_t size>
+void shuffle(const unsigned char* data, uint64_t elements, unsigned char* to) {
+  for (uint64_t k = 0; k < elements; ++k)
+    for (size_t b = 0; b < size; ++b) to[b * elements + k] = data[k * size + b];
+}
+
 // HDF5's filters, worked by libdeflate, which takes a third of zlib's time for the same format.
 class Compressor {
  public:
@@ -26,11 +33,22 @@ class Compressor {
   ~Compressor() { libdeflate_free_compressor(compressor_); }
   Compressor(const Compressor&) = delete;
 
-  // What the shuffle filter does (first bytes of all elements, then second bytes, ...), then the gzip filter.
+  // The shuffle filter, then the gzip filter.
   std::span<const unsigned char> pack(const unsigned char* data, uint64_t elements, size_t size) {
     shuffled_.resize(elements * size);
-    for (size_t b = 0; b < size; ++b)
-      for (uint64_t k = 0; k < elements; ++k) shuffled_[b * elements + k] = data[k * size + b];
+    switch (size) {
+      case 1:
+        shuffle<1>(data, elements, shuffled_.data());
+        break;
+      case 2:
+        shuffle<2>(data, elements, shuffled_.data());
+        break;
+      case 4:
+        shuffle<4>(data, elements, shuffled_.data());
+        break;
+      default:
+        shuffle<8>(data, elements, shuffled_.data());
+    }
     packed_.resize(libdeflate_zlib_compress_bound(compressor_, shuffled_.size()));
     const size_t bytes =
         libdeflate_zlib_compress(compressor_, shuffled_.data(), shuffled_.size(), packed_.data(), packed_.size());
