@@ -44,6 +44,7 @@ class File {
   uint64_t size() const {
     struct stat status {};
     if (fstat(descriptor_, &status) != 0) throw_errno();
+    if (S_ISDIR(status.st_mode)) throw std::system_error(EISDIR, std::generic_category());  // has some size, too
     return static_cast<uint64_t>(status.st_size);
   }
   void read(void* data, uint64_t size, uint64_t offset) const {

@@ -11,6 +11,7 @@
 #include "runtime/case_error.h"
 #include "runtime/contact_sums.h"
 #include "runtime/particle_fields.h"
+#include "runtime/random.h"
 #include "runtime/render/particle_frame.h"
 #include "runtime/solid_mesh.h"
 #include "tests/runtime/case_text.h"
@@ -185,6 +186,33 @@ std::vector<float> written(const fs::path& path, const std::string& name) {
   std::vector<float> values;
   StateReader(file).load("VTKHDF/" + name, values);
   return values;
+}
+
+// What the writer packs itself, the library unpacks by its own filters.
+TEST(FieldFiles, KeepNoiseAndWhatIsNotToTheBit) {
+  testing::Folder folder;
+  Random random(3, 1);
+  const size_t count = 150001;
+  std::vector<float> noise(count), half(count), still(count);
+  std::vector<double> wide(count);
+  for (size_t k = 0; k < count; ++k) {
+    noise[k] = static_cast<float>(random.uniform(-1, 1)), wide[k] = random.uniform(1e-3, 1e3);
+    half[k] = random.uniform(0, 1) < 0.5 ? 0 : noise[k];
+  }
+  const fs::path path = folder.path("noise.vtkhdf");
+  {
+    VtkHdfFile file(path, VtkHdfType::unstructured_grid);
+    file.array("noise", std::span<const float>(noise)), file.array("half", std::span<const float>(half));
+    file.array("still", std::span<const float>(still)), file.array("wide", std::span<const double>(wide));
+    file.close();
+  }
+  EXPECT_EQ(written(path, "noise"), noise);
+  EXPECT_EQ(written(path, "half"), half);
+  EXPECT_EQ(written(path, "still"), still);
+  Hdf5Reader file(path);
+  std::vector<double> read;
+  StateReader(file).load("VTKHDF/wide", read);
+  EXPECT_EQ(read, wide);
 }
 
 TEST(FieldFiles, SayThatContactsAreUnknownAfterAnInsertion) {
