@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace scree {
 
@@ -15,6 +16,8 @@ double round_down(double x) {
 }
 
 Ticks ticks_between(double min, double max, int most) {
+  if (min > max) std::swap(min, max);
+  if (!(max > min)) return {};
   double step = round_down((max - min) / most);
   const auto count = [&] { return std::floor(max / step + 1e-9) - std::ceil(min / step - 1e-9) + 1; };
   while (count() > most) step = round_down(step * 2.5);  // 1 to 2 to 5 to 10

@@ -13,7 +13,8 @@ struct Ticks {
   std::vector<double> values;       // from min to max, at a round distance
   std::vector<std::string> labels;  // each exact, all with the same number of decimals
 };
-// At most `most` ticks (two or more) in [min, max], min < max.
+// At most `most` ticks (two or more) between min and max, ascending whichever of them is larger; none where they are
+// equal or not numbers.
 Ticks ticks_between(double min, double max, int most);
 
 // The SI prefix with which `largest` reads as 0.1 to 9999: value / factor in prefix + unit.

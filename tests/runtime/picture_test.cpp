@@ -189,6 +189,9 @@ TEST(Ticks, AreRoundAndInside) {
     EXPECT_LE(ticks.values.size(), 6u);
     for (const double v : ticks.values) EXPECT_TRUE(v >= min - 1e-9 * max && v <= max * (1 + 1e-9)) << v;
   }
+  EXPECT_EQ(ticks_between(3, 0, 6).labels, ticks_between(0, 3, 6).labels);  // an axis that counts downwards
+  EXPECT_TRUE(ticks_between(2, 2, 6).values.empty());
+  EXPECT_TRUE(ticks_between(std::nan(""), 2, 6).values.empty());
   EXPECT_EQ(prefix_for(3e-6, "N").prefix, "µ");
   EXPECT_EQ(prefix_for(0.3, "m/s").prefix, "");
 }
