@@ -18,7 +18,7 @@ namespace scree::fuzz {
 inline constexpr const char* kSmallRun = R"(
 base = "common_box.toml"
 time = {rayleigh_fraction = 0.3}
-output = {interval = 1e-4}
+output = {interval = 1e-4, touch = {cell = 5e-3, around = 4}}
 checkpoint = {interval = 1e-9, keep = 1000}
 neighbour = {skin = 2e-4}
 [domain]

@@ -1,8 +1,9 @@
 // Arrays of the right names with any content and size are a state that the run can go on from, or are refused; nothing
 // else may happen. (What is damaged on the disk never comes so far: seal_fuzz.cpp.)
 //
-// An input picks one of a real run's checkpoints and edits its arrays: byte 0 the checkpoint, then for each edit a byte
-// for the array, one for what is done to it, two for where or how much, one for how many bytes follow, and these.
+// An input picks one of a real run's checkpoints and edits its arrays: byte 0 the checkpoint and who loads it, the
+// whole run or an engine that then takes steps; then for each edit a byte for the array, one for what is done to it,
+// two for where or how much, one for how many bytes follow, and these.
 #include <cstdint>
 
 #include <spdlog/sinks/null_sink.h>
@@ -67,9 +68,15 @@ void edit(Arrays& arrays, Input& in) {
     if (const char c = static_cast<char>(in.byte()); begin + k < bytes.size()) bytes[begin + k] = c;
 }
 
+void load_run(const World& world, const Arrays& arrays) {
+  MemorySource source(arrays);
+  StateReader in(source);
+  Simulation(world.run.c, world.options, world.log).load(in);
+}
+
 // Goes through all that reads the lists: steps, the histories' way across a rebuild, sums.
-void go_on(const Case& c, const EngineOptions& options, const Arrays& arrays) {
-  const auto engine = make_engine(c, options);
+void go_on(const World& world, const Arrays& arrays) {
+  const auto engine = make_engine(world.run.c, world.options.engine);
   MemorySource source(arrays);
   StateReader in(source);
   engine->load(in);
@@ -90,13 +97,14 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace scree;
   const fuzz::World& world = fuzz::world();
   fuzz::Input input(data, size);
-  fuzz::Arrays arrays = world.states[input.byte() % world.states.size()];
+  const size_t first = input.byte(), states = world.states.size();
+  fuzz::Arrays arrays = world.states[first % states];
   for (size_t k = 0; k < fuzz::kMostEdits && !input.empty(); ++k) fuzz::edit(arrays, input);
   try {
-    MemorySource source(arrays);
-    StateReader in(source);
-    Simulation(world.run.c, world.options, world.log).load(in);
-    fuzz::go_on(world.run.c, world.options.engine, arrays);
+    if (first / states % 2 == 0)
+      fuzz::load_run(world, arrays);
+    else
+      fuzz::go_on(world, arrays);
   } catch (const Hdf5Error&) {
   } catch (const StateRefused&) {
   } catch (const CheckpointRefused&) {
