@@ -30,6 +30,11 @@ void* allocate(size_t size, size_t alignment) {
 }  // namespace
 
 void* operator new(size_t size) { return allocate(size, 0); }
+void* operator new(size_t size, const std::nothrow_t&) noexcept try {
+  return allocate(size, 0);
+} catch (const std::bad_alloc&) {
+  return nullptr;
+}
 void* operator new(size_t size, std::align_val_t alignment) { return allocate(size, static_cast<size_t>(alignment)); }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, size_t) noexcept { std::free(memory); }
