@@ -15,7 +15,9 @@ namespace {
 
 constexpr uint64_t kPieceRows = 65536;  // of an array, compressed together
 constexpr int kLevel = 1;               // of 12: what is left of the digits of a grain's velocity is noise to all
-constexpr uint8_t kVertex = 1;          // VTK's number for it
+constexpr double kWorthIt = 0.85;       // bytes left of a sample: with more, packing takes longer than it is worth
+constexpr uint64_t kSampleBytes = 16384;
+constexpr uint8_t kVertex = 1;  // VTK's number for it
 
 // What the shuffle filter does: first bytes of all elements, then second bytes, ...
 template <size_t size>
@@ -33,8 +35,25 @@ class Compressor {
   ~Compressor() { libdeflate_free_compressor(compressor_); }
   Compressor(const Compressor&) = delete;
 
+  // A piece as it goes to the file: bytes, and a bit for each of the two filters that was left out.
+  struct Packed {
+    std::span<const unsigned char> bytes;
+    uint32_t left_out;
+  };
+  // Both filters, unless a run of elements from the middle says that there is next to nothing in it.
+  Packed pack(const unsigned char* data, uint64_t elements, size_t size) {
+    const uint64_t sample = kSampleBytes / size;
+    if (elements > sample) {
+      const auto packed = filter(data + (elements - sample) / 2 * size, sample, size);
+      if (static_cast<double>(packed.size()) > kWorthIt * static_cast<double>(sample * size))
+        return {{data, elements * size}, 0b11};
+    }
+    return {filter(data, elements, size), 0};
+  }
+
+ private:
   // The shuffle filter, then the gzip filter.
-  std::span<const unsigned char> pack(const unsigned char* data, uint64_t elements, size_t size) {
+  std::span<const unsigned char> filter(const unsigned char* data, uint64_t elements, size_t size) {
     shuffled_.resize(elements * size);
     switch (size) {
       case 1:
@@ -55,7 +74,6 @@ class Compressor {
     return {packed_.data(), bytes};
   }
 
- private:
   libdeflate_compressor* compressor_;
   std::vector<unsigned char> shuffled_, packed_;
 };
@@ -156,10 +174,11 @@ void VtkHdfFile::blocks(const std::string& name, const ElementType& type, const 
       std::memcpy(padded.data(), from, (rows - row) * per_row * type.size);
       from = padded.data();
     }
-    const std::span<const unsigned char> packed = state_->compressor.pack(from, piece_elements, type.size);
+    const Compressor::Packed packed = state_->compressor.pack(from, piece_elements, type.size);
     const Hdf5Lock lock;
     at[0] = row;
-    checked(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), packed.size(), packed.data()), name);
+    checked(H5Dwrite_chunk(set, H5P_DEFAULT, packed.left_out, at.data(), packed.bytes.size(), packed.bytes.data()),
+            name);
   }
   const Hdf5Lock lock;
   set.close();
