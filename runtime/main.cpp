@@ -206,7 +206,7 @@ int command_line(int argc, char** argv) {
       "  ls cases/examples                       one example per feature\n"};
   app.footer(
       "Results: report.html (open it in a browser), mass_flow.csv, meters.csv, summary.json, pictures/, fields/\n"
-      "(ParaView), residence.csv, retained.csv, particles.vtp (ParaView, OVITO), case.toml, run.log.\n"
+      "(ParaView), residence.csv, retained.csv, particles.vtp (ParaView), case.toml, run.log.\n"
       "A run that was interrupted, killed or failed goes on to the same bits:  scree resume DIR\n"
       "Exit codes: 0 done, 2 bad input, 3 the run failed, 130 interrupted (Ctrl-C ends a run cleanly).");
   app.set_version_flag("--version", "scree 0.1.0");

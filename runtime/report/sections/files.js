@@ -4,7 +4,7 @@ const kFileWords = [
   [/^mass_flow\.csv$/, "time, discharged mass, mass flow"],
   [/^meters\.csv$/, "time, mass in each meter"],
   [/^summary\.json$/, "the numbers of this page"],
-  [/^particles\.vtp$/, "the final particles, for ParaView and OVITO"],
+  [/^particles\.vtp$/, "the final particles, for ParaView"],
   [/^failure\.vtp$/, "the particles round the place of the failure"],
   [/^case\.toml$/, "the case in full, defaults filled in: can be run again"],
   [/^run\.log$/, "what happened when"],
