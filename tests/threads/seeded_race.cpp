@@ -1,9 +1,11 @@
 // Shows that the thread sanitizer sees the threads of kernels/parallel.h:
 //   seeded_race race     two pieces of a loop write one place: must be reported
 //   seeded_race clean    each piece writes its own, read after the loop: must not be
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 #include "kernels/parallel.h"
@@ -15,6 +17,7 @@ int main(int argc, char** argv) {
   std::vector<double> sums(kPieces);
   for (int repeat = 0; repeat < 20; ++repeat)
     scree::parallel_for(kPieces, [&](size_t k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // or one thread does it all on a busy machine
       double& sum = sums[race ? 0 : k];
       for (int n = 0; n < 1000; ++n) sum += 0.5 * n;
     });
