@@ -62,17 +62,30 @@ struct HistoryTable {
     visit("solids", &HistoryTable::solids);
   }
 
-  // Copies the history of old particles a and b, as seen from a, to a lane of a block. False if there is none.
-  bool copy_pair(uint32_t a, uint32_t b, Real* to) const {
-    if (a >= count || b >= count) return false;
-    const bool together = a / chunk_size == b / chunk_size;  // stored once, at the lower index
-    const uint32_t row = together && b < a ? b : a, partner = row == a ? b : a;
-    const HistoryEntry<Real>* e = pairs[row / chunk_size].find(row % chunk_size, partner);
-    if (!e) return false;
-    const Real sign = row == a ? Real(1) : Real(-1);
-    for (int k = 0; k < 6; ++k) to[k * kBlock] = sign * e->value[k];
-    return true;
-  }
+  // What old particle a's pairs had.
+  class Pairs {
+   public:
+    Pairs(const HistoryTable& table, uint32_t a) : table_(table), a_(a) {
+      if (a >= table.count) return;
+      own_ = &table.pairs[a / table.chunk_size];
+      begin_ = a / table.chunk_size * table.chunk_size;
+    }
+    // Copies the history of a and b, as seen from a, to a lane of a block. False if there is none.
+    bool copy(uint32_t b, Real* to) const {
+      if (!own_ || b >= table_.count) return false;
+      const bool at_b = b < a_ && b >= begin_;  // inside a chunk a pair is stored once, at the lower index
+      const HistoryEntry<Real>* e = at_b ? own_->find(b - begin_, a_) : own_->find(a_ - begin_, b);
+      if (!e) return false;
+      const Real sign = at_b ? Real(-1) : Real(1);
+      for (int k = 0; k < 6; ++k) to[k * kBlock] = sign * e->value[k];
+      return true;
+    }
+
+   private:
+    const HistoryTable& table_;
+    uint32_t a_, begin_ = 0;
+    const ChunkHistory<Real>* own_ = nullptr;  // null: a is new
+  };
   bool copy_solid(uint32_t a, uint32_t primitive, Real* to) const {
     if (a >= count) return false;
     const HistoryEntry<Real>* e = solids[a / chunk_size].find(a % chunk_size, primitive);

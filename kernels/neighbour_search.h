@@ -29,6 +29,8 @@ struct SearchTask {
 // that no pair that the double test would list is missed.
 inline constexpr float kSearchMargin = 1e-5f;
 
+inline constexpr float kElsewhere = 1e9f;
+
 // Particles of up to 4 x 4 x 4 cells (a run in Morton order: a family) share one gathering of candidates.
 inline constexpr uint32_t kFamilyBits = 2, kMostAround = (1u << kFamilyBits) + 2;
 
@@ -37,6 +39,7 @@ inline constexpr uint32_t kFamilyBits = 2, kMostAround = (1u << kFamilyBits) + 2
 class Candidates {
  public:
   std::vector<float> x, y, z, radius;
+  std::vector<float> rank;  // in the chunk, from `first` on; kElsewhere outside it: i lists those of higher rank
   std::vector<uint32_t> index;
   std::vector<uint8_t> wraps;  // seen through a periodic border
 
@@ -65,6 +68,8 @@ class Candidates {
     reserve(size_ + kBlock);  // the last run's vector reads beyond it
   }
 
+  uint32_t size() const { return size_; }
+
   struct Run {
     uint32_t begin, end;
   };
@@ -78,7 +83,8 @@ class Candidates {
   void reserve(size_t count) {
     if (wraps.size() >= count) return;  // the last to grow: no memory may have been left on the way
     count += count / 2 + 64;
-    x.resize(count), y.resize(count), z.resize(count), radius.resize(count), index.resize(count);
+    for (auto* column : {&x, &y, &z, &radius, &rank}) column->resize(count);
+    index.resize(count);
     wraps.resize(count);
   }
 
@@ -95,6 +101,8 @@ class Candidates {
       y[size_] = static_cast<float>(p.y - from.y);
       z[size_] = static_cast<float>(p.z - from.z);
       radius[size_] = static_cast<float>(p.radius);
+      const bool here = k >= task.begin && k < task.end;
+      rank[size_] = here ? static_cast<float>(static_cast<int64_t>(k) - int64_t{first}) : kElsewhere;
       index[size_] = k;
       wraps[size_] = through_border;
     }
@@ -111,65 +119,111 @@ class Candidates {
   uint32_t size_ = 0;
 };
 
+// The lists that a pair may come into, nearest first.
+enum PairList : uint8_t { kActive, kNear, kFar, kPairLists };
+
 // Pairs through a periodic border wait until a chunk's other pairs are listed: they come last.
 struct WrappingPair {
   uint32_t i, j;
-  bool active, near;
+  PairList list;
 };
 
-template <class L>
-inline void emit_pair(const SearchTask<typename L::Real>& task, uint32_t i, uint32_t j, bool active, bool near) {
-  if (!active) {
-    (near ? task.contacts->near : task.contacts->far).push_back({i, j});
-    return;
+// What the search for one particle finds, as places among the candidates: all, then apart by list.
+struct FoundPairs {
+  std::vector<uint32_t> all, of[kPairLists];
+
+  void reserve(size_t count) {
+    if (of[kPairLists - 1].size() >= count) return;
+    all.resize(count);
+    for (auto& list : of) list.resize(count);
   }
-  auto& block = task.contacts->append(i, j);
-  task.history->copy_pair(task.old_index[i], task.old_index[j], block.history[0] + (task.contacts->pairs - 1) % kBlock);
+};
+
+// A particle as the candidates are given: relative to their centre.
+struct SearchSphere {
+  float x, y, z, radius, rank;
+};
+
+// Whether spheres are nearer than `gap` to touching, so far as float tells.
+template <class F>
+inline auto within(const Vec<F>& d, const F& radius_and_gap, const F& other_radius) {
+  const F reach = (radius_and_gap + other_radius) * F(1 + kSearchMargin);
+  return dot(d, d) <= reach * reach;
 }
 
-// N lanes of floats, whatever the storage type.
-template <class L>
-inline void search_particle(const SearchTask<typename L::Real>& task, const Candidates& c, uint32_t i,
-                            const std::array<uint32_t, 3>& cell, const Vec3& centre,
-                            std::vector<WrappingPair>& wrapping) {
-  using S = std::conditional_t<L::width == 1, ScalarLanes<float>, L>;
+// Places of the candidates that p lists; returns how many. Few of those looked at are, and which is chance: no branch
+// depends on it.
+template <class S>
+inline uint32_t find_pairs(const Candidates& c, const SearchSphere& p, const std::array<uint32_t, 3>& cell, double gap,
+                           uint32_t* found) {
   using F = typename S::F;
-  const auto& p = task.particles[i];
-  const F x(static_cast<float>(p.x - centre.x)), y(static_cast<float>(p.y - centre.y)),
-      z(static_cast<float>(p.z - centre.z));
-  const float radius = static_cast<float>(p.radius);
-  const F outer(static_cast<float>(radius + task.skin)), middle(static_cast<float>(radius + task.middle)),
-      inner(static_cast<float>(radius + task.inner));
-  const F margin(1 + kSearchMargin);
+  const float *x = c.x.data(), *y = c.y.data(), *z = c.z.data(), *radius = c.radius.data(), *rank = c.rank.data();
+  const F own(static_cast<float>(p.radius + gap)), own_rank(p.rank);
+  const Vec<F> at{F(p.x), F(p.y), F(p.z)};
+  uint32_t count = 0;
   for (int row = 0; row < 9; ++row) {
     const auto [begin, end] = c.run(cell, row % 3 - 1, row / 3 - 1);
     for (uint32_t k = begin; k < end; k += S::width) {
-      const Vec<F> d{x - S::load(&c.x[k]), y - S::load(&c.y[k]), z - S::load(&c.z[k])};
-      const F distance2 = dot(d, d), other = S::load(&c.radius[k]);
-      const auto within = [&](const F& gap) {
-        const F reach = (gap + other) * margin;
-        return S::bits(distance2 <= reach * reach);
-      };
-      unsigned listed = within(outer);
-      if (end - k < S::width) listed &= (1u << (end - k)) - 1;
-      if (listed == 0) continue;
-      const unsigned near = within(middle), active = within(inner);
-      for (; listed != 0; listed &= listed - 1) {
-        const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(listed)), j = c.index[k + lane];
-        if (j <= i && j >= task.begin) continue;
-        if (c.wraps[k + lane])
-          wrapping.push_back({i, j, (active >> lane & 1u) != 0, (near >> lane & 1u) != 0});
-        else
-          emit_pair<L>(task, i, j, active >> lane & 1u, near >> lane & 1u);
-      }
+      const Vec<F> d = at - Vec<F>{S::load(x + k), S::load(y + k), S::load(z + k)};
+      const auto listed =
+          within(d, own, S::load(radius + k)) & (S::load(rank + k) > own_rank) & S::first_lanes(end - k);
+      count += S::store_lanes(listed, k, found + count);
     }
   }
+  return count;
+}
+
+template <class Real>
+inline void list_pair(const SearchTask<Real>& task, const typename HistoryTable<Real>::Pairs& histories,
+                      const WrappingPair& pair) {
+  ChunkContacts<Real>& contacts = *task.contacts;
+  if (pair.list == kActive) {
+    auto& block = contacts.append(pair.i, pair.j);
+    histories.copy(task.old_index[pair.j], block.history[0] + (contacts.pairs - 1) % kBlock);
+  } else {
+    (pair.list == kNear ? contacts.near : contacts.far).push_back({pair.i, pair.j});
+  }
+}
+
+// `first`: where the particle's family begins.
+template <class L>
+inline void search_particle(const SearchTask<typename L::Real>& task, const Candidates& c, uint32_t i, uint32_t first,
+                            const std::array<uint32_t, 3>& cell, const Vec3& centre, FoundPairs& found,
+                            std::vector<WrappingPair>& wrapping) {
+  using Real = typename L::Real;
+  using S = std::conditional_t<L::width == 1, ScalarLanes<float>, L>;  // floats, whatever the storage type
+  const Particle<Real>& own = task.particles[i];
+  const SearchSphere p{static_cast<float>(own.x - centre.x), static_cast<float>(own.y - centre.y),
+                       static_cast<float>(own.z - centre.z), static_cast<float>(own.radius),
+                       static_cast<float>(i - first)};
+  const uint32_t count = find_pairs<S>(c, p, cell, task.skin, found.all.data());
+  const float middle = static_cast<float>(p.radius + task.middle), inner = static_cast<float>(p.radius + task.inner);
+  uint32_t sizes[kPairLists] = {};
+  const uint32_t* const all = found.all.data();
+  uint32_t* const of[kPairLists] = {found.of[kActive].data(), found.of[kNear].data(), found.of[kFar].data()};
+  for (uint32_t n = 0; n < count; ++n) {
+    const uint32_t k = all[n];
+    const Vec<float> d{p.x - c.x[k], p.y - c.y[k], p.z - c.z[k]};
+    const int list = !within(d, middle, c.radius[k]) + !within(d, inner, c.radius[k]);
+    of[list][sizes[list]++] = k;
+  }
+  const typename HistoryTable<Real>::Pairs histories(*task.history, task.old_index[i]);
+  for (const PairList list : {kActive, kNear, kFar})
+    for (uint32_t n = 0; n < sizes[list]; ++n) {
+      const uint32_t k = of[list][n];
+      const WrappingPair pair{i, c.index[k], list};
+      if (c.wraps[k])
+        wrapping.push_back(pair);
+      else
+        list_pair(task, histories, pair);
+    }
 }
 
 template <class L>
 void search_chunk(const SearchTask<typename L::Real>& task) {
   using Cell = std::array<uint32_t, 3>;
   thread_local Candidates candidates;
+  thread_local FoundPairs found;
   thread_local std::vector<WrappingPair> wrapping;
   wrapping.clear();
   const auto position = [&](uint32_t k) { return Vec3{task.particles[k].x, task.particles[k].y, task.particles[k].z}; };
@@ -192,14 +246,15 @@ void search_chunk(const SearchTask<typename L::Real>& task) {
     }
     const Vec3 centre = position(first);
     candidates.gather(task, low, high, first, centre);
+    found.reserve(candidates.size() + kBlock);
     for (uint32_t m = 0; m < count; ++m)
       for (uint32_t i = members[m].begin; i < (m + 1 < count ? members[m + 1].begin : last); ++i)
-        search_particle<L>(task, candidates, i, members[m].cell, centre, wrapping);
+        search_particle<L>(task, candidates, i, first, members[m].cell, centre, found, wrapping);
     first = last;
   }
   if (wrapping.empty()) return;
   task.contacts->first_wrapping = task.contacts->pairs / kBlock;
-  for (const WrappingPair& p : wrapping) emit_pair<L>(task, p.i, p.j, p.active, p.near);
+  for (const WrappingPair& p : wrapping) list_pair(task, {*task.history, task.old_index[p.i]}, p);
 }
 
 }  // namespace scree

@@ -39,6 +39,13 @@ struct ScalarLanes {
   static unsigned bits(bool mask) { return mask ? 1u : 0u; }
   static bool narrow_mask(bool mask) { return mask; }
   static bool mask_from_bits(unsigned bits) { return bits & 1u; }
+  static bool first_lanes(uint32_t count) { return count > 0; }
+  // Writes first + lane for each lane of the mask, one behind the other; returns how many. As many words as there are
+  // lanes may be overwritten.
+  static uint32_t store_lanes(bool mask, uint32_t first, uint32_t* to) {
+    *to = first;
+    return mask ? 1 : 0;
+  }
   static Real max_lane(F a) { return a; }
 
   // Eight consecutive Reals of each row become eight lane vectors.
@@ -54,6 +61,17 @@ struct ScalarLanes {
     for (int k = 0; k < 8; ++k) rows[0][k] += columns[k];
   }
 };
+
+// The numbers of a byte's set bits, ascending. (Not inline: the object for AVX-512 shares no symbol with the rest.)
+constexpr struct SetBits {
+  uint8_t at[256][8];
+} kSetBits = [] {
+  SetBits t{};
+  for (unsigned byte = 0; byte < 256; ++byte)
+    for (unsigned bit = 0, n = 0; bit < 8; ++bit)
+      if (byte >> bit & 1u) t.at[byte][n++] = static_cast<uint8_t>(bit);
+  return t;
+}();
 
 // ---- a number of two halves
 // --------------------------------------------------------
@@ -216,6 +234,20 @@ struct NativeLanes {
   [[gnu::always_inline]] static FMask mask_from_bits(unsigned bits) {
     const uint8_t bytes[8] = {static_cast<uint8_t>(bits), static_cast<uint8_t>(bits >> 8)};
     return {hn::LoadMaskBits(FloatTag(), bytes)};
+  }
+  [[gnu::always_inline]] static FMask first_lanes(uint32_t count) { return {hn::FirstN(FloatTag(), count)}; }
+  [[gnu::always_inline]] static uint32_t store_lanes(FMask mask, uint32_t first, uint32_t* to) {
+    constexpr int group = kWidth < 8 ? kWidth : 8;
+    const hn::CappedTag<uint32_t, group> words;
+    const hn::Rebind<uint8_t, decltype(words)> bytes;
+    uint32_t stored = 0;
+    for (int g = 0; g < kWidth; g += group) {
+      const unsigned set = bits(mask) >> g & ((1u << group) - 1);
+      const auto lanes = hn::PromoteTo(words, hn::LoadU(bytes, kSetBits.at[set]));
+      hn::StoreU(hn::Add(lanes, hn::Set(words, first + g)), words, to + stored);
+      stored += static_cast<uint32_t>(__builtin_popcount(set));
+    }
+    return stored;
   }
   [[gnu::always_inline]] static float max_lane(F a) { return hn::GetLane(hn::MaxOfLanes(FloatTag(), a.v)); }
 

@@ -59,7 +59,7 @@ class Histories : public ::testing::Test {
   // What a rebuilt pair (a, b) finds, if anything.
   bool finds(uint32_t a, uint32_t b, Values& v) const {
     PairBlock<float> block{};
-    const bool found = table_.copy_pair(a, b, block.history[0] + 5);
+    const bool found = HistoryTable<float>::Pairs(table_, a).copy(b, block.history[0] + 5);
     v = lane_of(block, 5);
     for (int lane = 0; lane < kBlock; ++lane)
       EXPECT_TRUE(lane == 5 || lane_of(block, lane) == Values{}) << "another lane was written";

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -131,6 +132,23 @@ TYPED_TEST(Lanes, WideningIsExactAndNarrowingRoundsToNearest) {
     for (int k = 0; k < width; ++k) ASSERT_EQ(narrow[k], static_cast<Real>(y[k]));
     EXPECT_EQ(this->stored(TypeParam::narrow(TypeParam::widen(TypeParam::load(x.data())))), x);
   }
+}
+
+TYPED_TEST(Lanes, NumbersOfAMasksLanesAreStoredOneBehindTheOther) {
+  constexpr uint32_t width = TypeParam::width;
+  for (unsigned wanted = 0; wanted < (1u << width); wanted += 1 + wanted / 999) {
+    std::vector<uint32_t> expected, stored(2 * width, 7);
+    for (uint32_t lane = 0; lane < width; ++lane)
+      if (wanted >> lane & 1u) expected.push_back(4000000000u + lane);
+    const uint32_t count = TypeParam::store_lanes(TypeParam::mask_from_bits(wanted), 4000000000u, stored.data());
+    ASSERT_EQ(std::vector(stored.begin(), stored.begin() + count), expected);
+    EXPECT_EQ(std::count(stored.begin() + width, stored.end(), 7u), width) << "written beyond a vector";
+  }
+}
+
+TYPED_TEST(Lanes, TheFirstLanesAreAsManyAsThereAre) {
+  for (uint32_t count = 0; count < 40; ++count)
+    EXPECT_EQ(TypeParam::bits(TypeParam::first_lanes(count)), (1u << std::min<uint32_t>(count, TypeParam::width)) - 1);
 }
 
 TYPED_TEST(Lanes, BitsAndMasksAreInverse) {
