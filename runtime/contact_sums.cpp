@@ -28,20 +28,18 @@ ContactSums contact_sums(std::span<const ParticleState> particles, const Engine&
   const size_t n = particles.size();
   ContactSums sums{std::vector<Vec3>(n, Vec3{0, 0, 0}), std::vector<uint16_t>(n), std::vector<uint16_t>(n),
                    std::vector<Stress>(n)};
-  engine.visit_contacts([&](std::span<const ContactState> contacts) {
+  const auto add = [&](size_t k, const Vec3& branch, const Vec3& force) {
+    sums.force[k] += force;
+    add_product(sums.stress[k], -inverse_volume(particles[k].radius), branch, force);
+  };
+  engine.visit_contacts_by_particles([&](size_t first, size_t last, std::span<const ContactState> contacts) {
     for (const ContactState& k : contacts) {
-      const ParticleState& i = particles[k.i];
-      sums.force[k.i] += k.force;
-      add_product(sums.stress[k.i], -inverse_volume(i.radius), k.point - i.position, k.force);
-      if (k.with_solid) {
-        ++sums.wall_contacts[k.i];
-        continue;
-      }
+      add(k.i, k.point - particles[k.i].position, k.force);
+      ++(k.with_solid ? sums.wall_contacts : sums.coordination)[k.i];
+      if (k.with_solid || k.j < first || k.j >= last) continue;
       // From j the point lies along the normal; its own coordinates may be those beside i's periodic image.
-      const ParticleState& j = particles[k.j];
-      ++sums.coordination[k.i], ++sums.coordination[k.j];
-      sums.force[k.j] -= k.force;
-      add_product(sums.stress[k.j], inverse_volume(j.radius), (j.radius - 0.5 * k.overlap) * k.normal, k.force);
+      add(k.j, (particles[k.j].radius - 0.5 * k.overlap) * k.normal, -k.force);
+      ++sums.coordination[k.j];
     }
   });
   return sums;

@@ -286,27 +286,39 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
 }
 
 template <class Real>
+void Domain<Real>::find_contacts(size_t chunk, Contacts which, Across across, std::vector<ContactState>& found) const {
+  found.clear();
+  const auto add = [&](const TouchingContact& t) {
+    const bool solid = t.skeleton >= 0;
+    if (!solid && across == Across::once && t.j < chunk_begin(chunk)) return;  // the other chunk lists it too
+    found.push_back({t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force,
+                     t.slip, t.elastic_energy});
+  };
+  const ChunkTask<Real> task = chunk_task(chunk, nullptr);
+  if (which == Contacts::all) visit_touching_pairs<Real>(task, contacts_[chunk], add);
+  visit_touching_solids<Real>(task, contacts_[chunk], add);
+}
+
+template <class Real>
 void Domain<Real>::visit_contacts(const SeeContacts& see, Contacts which) const {
   if (!lists_valid_) return;
   constexpr size_t kAtOnce = 64;  // chunks
   std::vector<std::vector<ContactState>> found(std::min(kAtOnce, contacts_.size()));
   for (size_t first = 0; first < contacts_.size(); first += kAtOnce) {
     const size_t last = std::min(first + kAtOnce, contacts_.size());
-    parallel_for(last - first, [&](size_t k) {
-      const size_t c = first + k;
-      found[k].clear();
-      const auto add = [&](const TouchingContact& t) {
-        const bool solid = t.skeleton >= 0;
-        if (!solid && t.j < chunk_begin(c)) return;  // the other chunk lists it too
-        found[k].push_back({t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point,
-                            t.force, t.slip, t.elastic_energy});
-      };
-      const ChunkTask<Real> task = chunk_task(c, nullptr);
-      if (which == Contacts::all) visit_touching_pairs<Real>(task, contacts_[c], add);
-      visit_touching_solids<Real>(task, contacts_[c], add);
-    });
+    parallel_for(last - first, [&](size_t k) { find_contacts(first + k, which, Across::once, found[k]); });
     for (size_t k = 0; k < last - first; ++k) see(found[k]);
   }
+}
+
+template <class Real>
+void Domain<Real>::visit_contacts_by_particles(const SeeContactsOf& see) const {
+  if (!lists_valid_) return;
+  parallel_for(contacts_.size(), [&](size_t c) {
+    std::vector<ContactState> found;
+    find_contacts(c, Contacts::all, Across::from_each, found);
+    see(chunk_begin(c), chunk_end(c), found);
+  });
 }
 
 template <class Real>

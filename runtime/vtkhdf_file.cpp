@@ -1,88 +1,26 @@
 #include "runtime/vtkhdf_file.h"
 
-#include <libdeflate.h>
-
 #include <algorithm>
 #include <cstring>
 #include <functional>
 #include <numeric>
 
 #include "runtime/hdf5_handle.h"
+#include "runtime/shuffled_deflate.h"
 
 namespace scree {
 
 namespace {
 
 constexpr uint64_t kPieceRows = 65536;  // of an array, compressed together
-constexpr int kLevel = 1;               // of 12: what is left of the digits of a grain's velocity is noise to all
-constexpr double kWorthIt = 0.85;       // bytes left of a sample: with more, packing takes longer than it is worth
-constexpr uint64_t kSampleBytes = 16384;
-constexpr uint8_t kVertex = 1;  // VTK's number for it
-
-// What the shuffle filter does: first bytes of all elements, then second bytes, ...
-template <size_t size>
-void shuffle(const unsigned char* data, uint64_t elements, unsigned char* to) {
-  for (uint64_t k = 0; k < elements; ++k)
-    for (size_t b = 0; b < size; ++b) to[b * elements + k] = data[k * size + b];
-}
-
-// HDF5's filters, worked by libdeflate, which takes a third of zlib's time for the same format.
-class Compressor {
- public:
-  Compressor() : compressor_(libdeflate_alloc_compressor(kLevel)) {
-    if (!compressor_) throw std::bad_alloc();
-  }
-  ~Compressor() { libdeflate_free_compressor(compressor_); }
-  Compressor(const Compressor&) = delete;
-
-  // A piece as it goes to the file: bytes, and a bit for each of the two filters that was left out.
-  struct Packed {
-    std::span<const unsigned char> bytes;
-    uint32_t left_out;
-  };
-  // Both filters, unless a run of elements from the middle says that there is next to nothing in it.
-  Packed pack(const unsigned char* data, uint64_t elements, size_t size) {
-    const uint64_t sample = kSampleBytes / size;
-    if (elements > sample) {
-      const auto packed = filter(data + (elements - sample) / 2 * size, sample, size);
-      if (static_cast<double>(packed.size()) > kWorthIt * static_cast<double>(sample * size))
-        return {{data, elements * size}, 0b11};
-    }
-    return {filter(data, elements, size), 0};
-  }
-
- private:
-  // The shuffle filter, then the gzip filter.
-  std::span<const unsigned char> filter(const unsigned char* data, uint64_t elements, size_t size) {
-    shuffled_.resize(elements * size);
-    switch (size) {
-      case 1:
-        shuffle<1>(data, elements, shuffled_.data());
-        break;
-      case 2:
-        shuffle<2>(data, elements, shuffled_.data());
-        break;
-      case 4:
-        shuffle<4>(data, elements, shuffled_.data());
-        break;
-      default:
-        shuffle<8>(data, elements, shuffled_.data());
-    }
-    packed_.resize(libdeflate_zlib_compress_bound(compressor_, shuffled_.size()));
-    const size_t bytes =
-        libdeflate_zlib_compress(compressor_, shuffled_.data(), shuffled_.size(), packed_.data(), packed_.size());
-    return {packed_.data(), bytes};
-  }
-
-  libdeflate_compressor* compressor_;
-  std::vector<unsigned char> shuffled_, packed_;
-};
+constexpr int kLevel = 1;               // of gzip, as the file has it: readers do not ask
+constexpr uint8_t kVertex = 1;          // VTK's number for it
 
 }  // namespace
 
 struct VtkHdfFile::State {
   Handle file, group, link_properties;
-  Compressor compressor;
+  ShuffledDeflate compressor;
 
   // An array with its space and, unless it is empty, its filters and pieces.
   Handle make(const std::string& name, const ElementType& type, int rank, const hsize_t* size, const hsize_t* piece) {
@@ -174,11 +112,10 @@ void VtkHdfFile::blocks(const std::string& name, const ElementType& type, const 
       std::memcpy(padded.data(), from, (rows - row) * per_row * type.size);
       from = padded.data();
     }
-    const Compressor::Packed packed = state_->compressor.pack(from, piece_elements, type.size);
+    const auto packed = state_->compressor.pack(from, piece_elements, type.size);
     const Hdf5Lock lock;
     at[0] = row;
-    checked(H5Dwrite_chunk(set, H5P_DEFAULT, packed.left_out, at.data(), packed.bytes.size(), packed.bytes.data()),
-            name);
+    checked(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), packed.size(), packed.data()), name);
   }
   const Hdf5Lock lock;
   set.close();

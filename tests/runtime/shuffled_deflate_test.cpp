@@ -1,0 +1,77 @@
+// The zlib streams of field files, undone by libdeflate's own reader; field_files_test.cpp has HDF5's and VTK's.
+#include "runtime/shuffled_deflate.h"
+
+#include <gtest/gtest.h>
+#include <libdeflate.h>
+
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <random>
+
+namespace scree {
+namespace {
+
+std::vector<unsigned char> inflated(std::span<const unsigned char> stream, size_t bytes) {
+  std::vector<unsigned char> result(bytes);
+  libdeflate_decompressor* d = libdeflate_alloc_decompressor();
+  size_t got = 0;
+  EXPECT_EQ(libdeflate_zlib_decompress(d, stream.data(), stream.size(), result.data(), bytes, &got),
+            LIBDEFLATE_SUCCESS);
+  libdeflate_free_decompressor(d);
+  EXPECT_EQ(got, bytes);
+  return result;
+}
+
+// Packs, undoes both filters, compares; returns the share of bytes that is left.
+template <class T>
+double packed_share(const std::vector<T>& values) {
+  ShuffledDeflate filter;
+  const auto stream = filter.pack(reinterpret_cast<const unsigned char*>(values.data()), values.size(), sizeof(T));
+  const auto shuffled = inflated(stream, values.size() * sizeof(T));
+  std::vector<T> back(values.size());
+  for (size_t k = 0; k < values.size(); ++k)
+    for (size_t b = 0; b < sizeof(T); ++b)
+      reinterpret_cast<unsigned char*>(&back[k])[b] = shuffled[b * values.size() + k];
+  EXPECT_EQ(std::memcmp(back.data(), values.data(), values.size() * sizeof(T)), 0);
+  return static_cast<double>(stream.size()) / std::max<double>(1, values.size() * sizeof(T));
+}
+
+template <class T>
+std::vector<T> noise(size_t count) {
+  std::mt19937 random(7);
+  std::vector<T> result(count);
+  for (T& x : result) x = static_cast<T>(random());
+  return result;
+}
+
+std::vector<float> speeds(size_t count) {
+  std::mt19937 random(7);
+  std::vector<float> result(count);
+  for (float& x : result) x = static_cast<float>(std::normal_distribution(0.0, 0.1)(random));
+  return result;
+}
+
+TEST(ShuffledDeflate, GivesBackWhatWentIn) {
+  for (const size_t count : {0, 1, 2, 100, 4096, 4097, 65536, 200000}) {
+    SCOPED_TRACE(count);
+    packed_share(noise<uint8_t>(count)), packed_share(noise<uint16_t>(count)), packed_share(noise<uint64_t>(count));
+    packed_share(speeds(count));
+    std::vector<int64_t> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    packed_share(numbers);
+    packed_share(std::vector<double>(count, 2e-4));
+  }
+}
+
+TEST(ShuffledDeflate, PacksWhatIsNoNoiseAndAddsNextToNothingToNoise) {
+  EXPECT_LT(packed_share(noise<uint32_t>(100000)), 1.001);
+  EXPECT_LT(packed_share(speeds(100000)), 0.90);  // two bytes of noise, one of half noise, one of sign and exponent
+  std::vector<int64_t> numbers(100000);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  EXPECT_LT(packed_share(numbers), 0.02);
+  EXPECT_LT(packed_share(std::vector<float>(100000, 2e-4F)), 0.02);
+}
+
+}  // namespace
+}  // namespace scree
