@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <libdeflate.h>
 
-#include <cmath>
-#include <cstring>
+#include <algorithm>
 #include <numeric>
 #include <random>
+#include <vector>
 
 namespace scree {
 namespace {
@@ -33,7 +33,7 @@ double packed_share(const std::vector<T>& values) {
   for (size_t k = 0; k < values.size(); ++k)
     for (size_t b = 0; b < sizeof(T); ++b)
       reinterpret_cast<unsigned char*>(&back[k])[b] = shuffled[b * values.size() + k];
-  EXPECT_EQ(std::memcmp(back.data(), values.data(), values.size() * sizeof(T)), 0);
+  EXPECT_TRUE(back == values);
   return static_cast<double>(stream.size()) / std::max<double>(1, values.size() * sizeof(T));
 }
 
