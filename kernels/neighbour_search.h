@@ -29,7 +29,7 @@ struct SearchTask {
 // that no pair that the double test would list is missed.
 inline constexpr float kSearchMargin = 1e-5f;
 
-inline constexpr float kElsewhere = 1e9f;
+inline constexpr float kElsewhere = 1e9f;  // a rank above all of a chunk
 
 // Particles of up to 4 x 4 x 4 cells (a run in Morton order: a family) share one gathering of candidates.
 inline constexpr uint32_t kFamilyBits = 2, kMostAround = (1u << kFamilyBits) + 2;
@@ -122,8 +122,7 @@ class Candidates {
 // The lists that a pair may come into, nearest first.
 enum PairList : uint8_t { kActive, kNear, kFar, kPairLists };
 
-// Pairs through a periodic border wait until a chunk's other pairs are listed: they come last.
-struct WrappingPair {
+struct ListedPair {
   uint32_t i, j;
   PairList list;
 };
@@ -175,7 +174,7 @@ inline uint32_t find_pairs(const Candidates& c, const SearchSphere& p, const std
 
 template <class Real>
 inline void list_pair(const SearchTask<Real>& task, const typename HistoryTable<Real>::Pairs& histories,
-                      const WrappingPair& pair) {
+                      const ListedPair& pair) {
   ChunkContacts<Real>& contacts = *task.contacts;
   if (pair.list == kActive) {
     auto& block = contacts.append(pair.i, pair.j);
@@ -185,11 +184,12 @@ inline void list_pair(const SearchTask<Real>& task, const typename HistoryTable<
   }
 }
 
-// `first`: where the particle's family begins.
+// `first`: where the particle's family begins. Pairs through a periodic border wait in `wrapping` until the chunk's
+// other pairs are listed: they come last.
 template <class L>
 inline void search_particle(const SearchTask<typename L::Real>& task, const Candidates& c, uint32_t i, uint32_t first,
                             const std::array<uint32_t, 3>& cell, const Vec3& centre, FoundPairs& found,
-                            std::vector<WrappingPair>& wrapping) {
+                            std::vector<ListedPair>& wrapping) {
   using Real = typename L::Real;
   using S = std::conditional_t<L::width == 1, ScalarLanes<float>, L>;  // floats, whatever the storage type
   const Particle<Real>& own = task.particles[i];
@@ -211,7 +211,7 @@ inline void search_particle(const SearchTask<typename L::Real>& task, const Cand
   for (const PairList list : {kActive, kNear, kFar})
     for (uint32_t n = 0; n < sizes[list]; ++n) {
       const uint32_t k = of[list][n];
-      const WrappingPair pair{i, c.index[k], list};
+      const ListedPair pair{i, c.index[k], list};
       if (c.wraps[k])
         wrapping.push_back(pair);
       else
@@ -224,7 +224,7 @@ void search_chunk(const SearchTask<typename L::Real>& task) {
   using Cell = std::array<uint32_t, 3>;
   thread_local Candidates candidates;
   thread_local FoundPairs found;
-  thread_local std::vector<WrappingPair> wrapping;
+  thread_local std::vector<ListedPair> wrapping;
   wrapping.clear();
   const auto position = [&](uint32_t k) { return Vec3{task.particles[k].x, task.particles[k].y, task.particles[k].z}; };
   const auto family_of = [](const Cell& c) {
@@ -254,7 +254,7 @@ void search_chunk(const SearchTask<typename L::Real>& task) {
   }
   if (wrapping.empty()) return;
   task.contacts->first_wrapping = task.contacts->pairs / kBlock;
-  for (const WrappingPair& p : wrapping) list_pair(task, {*task.history, task.old_index[p.i]}, p);
+  for (const ListedPair& p : wrapping) list_pair(task, {*task.history, task.old_index[p.i]}, p);
 }
 
 }  // namespace scree
