@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,12 +41,14 @@ struct Arguments {
   bool profile = false;
 };
 
-// results/<case>, or the next of results/<case>-2, -3, ... that is free: nothing is overwritten.
-std::filesystem::path default_folder(const std::string& case_file) {
+// results/<case>, or the next of results/<case>-2, -3, ... that is free: nothing is overwritten. To resume: the last of
+// them that is there.
+std::filesystem::path default_folder(const std::string& case_file, bool resume) {
   const std::filesystem::path base = std::filesystem::path("results") / std::filesystem::path(case_file).stem();
-  std::filesystem::path folder = base;
-  for (int k = 2; std::filesystem::exists(folder); ++k) folder = base.string() + fmt::format("-{}", k);
-  return folder;
+  std::filesystem::path folder = base, last = base;
+  for (int k = 2; std::filesystem::exists(folder); ++k)
+    last = std::exchange(folder, base.string() + fmt::format("-{}", k));
+  return resume ? last : folder;
 }
 
 // A page that cannot be written takes nothing from the run.
@@ -64,7 +67,7 @@ int run(const Arguments& a) {
   if (a.checkpoint_every > 0) set.push_back(fmt::format("checkpoint.interval={}", a.checkpoint_every));
   const scree::Case c = scree::read_case(a.case_file, set);
   scree::RunOptions options;
-  options.out = a.out.empty() ? default_folder(a.case_file) : std::filesystem::path(a.out);
+  options.out = a.out.empty() ? default_folder(a.case_file, a.resume) : std::filesystem::path(a.out);
   options.resume = a.resume;
   if (!a.resume && std::filesystem::exists(options.out) && !std::filesystem::is_empty(options.out)) {
     fmt::print(stderr,
@@ -215,7 +218,8 @@ int command_line(int argc, char** argv) {
   CLI::App& run_command = *app.add_subcommand("run", "run a case");
   add_case_options(run_command, a);
   run_command.add_option("--out", a.out, "results folder (default: results/<case>, or the next free name)");
-  run_command.add_flag("--resume", a.resume, "go on from the newest checkpoint in the results folder, if it has one");
+  run_command.add_flag("--resume", a.resume, "go on from the newest checkpoint in the results folder, if it has one\n(without --out: the "
+                       "newest of results/<case>, results/<case>-2, ...)");
   add_run_options(run_command, a);
   CLI::App& resume_command = *app.add_subcommand("resume", "go on with an unfinished run from its newest checkpoint");
   resume_command.add_option("DIR", a.out, "its results folder")->required();

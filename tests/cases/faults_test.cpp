@@ -170,6 +170,22 @@ TEST_F(Faults, NoPlaceForCheckpointsStopsTheRunWithItsName) {
   expect_undisturbed(out);
 }
 
+// Without --out a run goes on in the newest folder of its case, and begins one where there is none.
+TEST_F(Faults, ResumeWithoutAFolderTakesTheNewestOfTheCase) {
+  const auto here = [&] { std::error_code failed; fs::current_path(folder_.path(), failed); };
+  const auto all = checkpoints_in(undisturbed());
+  const fs::path first = path("results") / "every_stage", second = path("results") / "every_stage-2";
+  ASSERT_EQ(execute({"run", case_, "--resume"}, here), 0) << said_;
+  expect_undisturbed(first);
+  const std::string before = text_of(first / "run.log");
+  make_died_run(second, all[all.size() / 2]);
+  ASSERT_EQ(execute({"run", case_, "--resume"}, here), 0) << said_;
+  EXPECT_NE(said_.find("resumed from " + all[all.size() / 2].filename().string()), std::string::npos) << said_;
+  expect_undisturbed(second);
+  EXPECT_EQ(text_of(first / "run.log"), before);
+  EXPECT_FALSE(fs::exists(path("results") / "every_stage-3"));
+}
+
 TEST_F(Faults, ResumeOfWhatIsNoRunIsBadInput) {
   EXPECT_EQ(execute({"resume", path("nothing").string()}), 2);
   EXPECT_NE(said_.find("case.toml"), std::string::npos) << said_;
