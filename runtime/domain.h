@@ -106,7 +106,8 @@ class Domain final : public Engine {
   static void for_each_field(const Visit& visit) {
     visit("count", &Domain::count_), visit("chunk_size", &Domain::chunk_size_), visit("next_id", &Domain::next_id_);
     visit("max_radius", &Domain::max_radius_), visit("min_radius", &Domain::min_radius_);
-    visit("max_speed", &Domain::max_speed_), visit("skin", &Domain::skin_);
+    visit("max_speed", &Domain::max_speed_), visit("max_overlap", &Domain::max_overlap_);
+    visit("skin", &Domain::skin_);
     visit("travel", &Domain::travel_), visit("lists_valid", &Domain::lists_valid_),
         visit("counters", &Domain::counters_);
     visit("solid_identity", &Domain::solid_identity_), visit("contacts", &Domain::contacts_);

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "kernels/array.h"
 #include "runtime/list_check.h"
 #include "runtime/results.h"
+#include "runtime/state_archive.h"
+#include "tests/array_memory.h"
 #include "tests/oracle/beds.h"
 #include "tests/runtime/case_text.h"
 
@@ -182,6 +185,50 @@ TEST(Watch, energy_held_by_contacts_is_in_the_budget) {
   const double overlap = std::pow(energy / (8.0 / 15 * modulus * std::sqrt(kRadius)), 0.4);
   const EnergyLook before{0, 0, mass, 0, overlap / kRadius, 1, 1}, after{1e-3, energy, mass, speed, 0, 1, 1};
   EXPECT_GT(EnergyBudget(c).most_after(before, after), energy);
+}
+
+// What `engine` saves, in a fresh engine of the same case; `edit` changes it on the way.
+std::unique_ptr<Engine> saved_and_loaded(const Engine& engine, const Case& c, const EngineOptions& options = {},
+                                         const std::function<void(StoredArrays&)>& edit = {}) {
+  const testing::Folder folder;
+  const std::string path = folder.path("state.h5");
+  {
+    Hdf5Writer file(path);
+    StateWriter out(file);
+    engine.save(out);
+    file.close();
+  }
+  RecordingSource source(path);
+  StateReader recorded(source);
+  auto loaded = make_engine(c, options);
+  loaded->load(recorded);
+  if (!edit) return loaded;
+  edit(source.arrays);
+  MemorySource memory(source.arrays);
+  StateReader edited(memory);
+  loaded = make_engine(c, options);
+  loaded->load(edited);
+  return loaded;
+}
+
+// All energy is in the contact there, none in motion: who resumes must know of the overlap before a step is taken.
+TEST(Watch, a_run_resumed_at_the_turning_point_of_a_bounce_goes_on) {
+  Case c = case_with_floor();
+  c.gravity = {0, 0, 0}, c.time.step = 1e-6;
+  auto engine = make_engine(c);
+  engine->insert(std::vector{grain({0, 0, 1.1 * kRadius}, kRadius, {0, 0, -0.5})});
+  double least = 1;
+  for (double speed = 0.5; speed <= least; speed = engine->max_speed()) least = speed, engine->step();
+  ASSERT_LT(least, 0.03);
+  ASSERT_GT(engine->max_overlap(), 0.03);
+  const double overlap = engine->max_overlap();
+  engine = saved_and_loaded(*engine, c);
+  EXPECT_EQ(engine->max_overlap(), overlap);
+  Watch watch(c);
+  EXPECT_TRUE(watch.look(*engine).empty());
+  run_steps(*engine, 500);
+  EXPECT_GT(engine->max_speed(), 0.15);
+  EXPECT_NO_THROW(watch.look(*engine));
 }
 
 std::unique_ptr<Engine> two_grains(Case c, double time_step, double speed, int steps) {
