@@ -60,12 +60,24 @@ double EnergyBudget::most_after(const EnergyLook& before, const EnergyLook& now)
   return kMargin * (before.kinetic + from_gravity + from_walls + elastic + at_rest);
 }
 
+void check_count(const Engine& engine) {
+  const EngineCounters& k = engine.counters();
+  if (k.inserted == k.removed + engine.count()) return;
+  throw RunError(fmt::format(
+      "{} particles went in, {} left through outlets, {} are left at t = {:.6g} s: {} lost. This is an error of the "
+      "program, please report it with the case",
+      k.inserted, k.removed, engine.count(), engine.time(),
+      static_cast<int64_t>(k.inserted) - static_cast<int64_t>(k.removed) - static_cast<int64_t>(engine.count())));
+}
+
 Watch::Watch(const Case& c) : case_(c), budget_(c), wall_speed_(largest_wall_speed(c)) {}
 
 std::vector<std::string> Watch::look(const Engine& engine) {
   const uint64_t steps = engine.counters().steps;
-  if (steps < next_step_ || engine.count() == 0) return {};
+  if (steps < next_step_) return {};
   next_step_ = steps + kStepsPerLook;
+  check_count(engine);
+  if (engine.count() == 0) return {};
   check_energy(engine);
   return check_step(engine);
 }

@@ -1,5 +1,6 @@
-// What a run watches now and then, beside what every step checks: that kinetic energy does not come from nowhere, and
-// that the time step resolves contacts at the speeds that are seen. Reads only; a look costs less than a step.
+// What a run watches now and then, beside what every step checks: that no particle is lost, that kinetic energy does not
+// come from nowhere, and that the time step resolves contacts at the speeds that are seen. Reads only; a look costs less
+// than a step.
 #pragma once
 
 #include <optional>
@@ -30,6 +31,9 @@ class EnergyBudget {
  private:
   double gravity_, wall_speed_, stiffness_, radius_;
 };
+
+// That every particle that went in is there or left through an outlet. Throws RunError.
+void check_count(const Engine& engine);
 
 class Watch {
  public:

@@ -268,6 +268,22 @@ TEST(Watch, a_step_too_large_for_the_speed_warns_once_and_then_stops) {
   }
 }
 
+TEST(Watch, a_lost_particle_stops_the_run_at_the_next_look) {
+  const Case c = ceramic_case(kBox);
+  const auto whole = two_grains(c, kStep, 0, 1);
+  EXPECT_TRUE(Watch(c).look(*whole).empty());
+  const auto lost = saved_and_loaded(*whole, c, {}, [](StoredArrays& arrays) {
+    const uint64_t inserted = 3;
+    std::memcpy(arrays.at("engine/counters/inserted").bytes.data(), &inserted, sizeof inserted);
+  });
+  try {
+    Watch(c).look(*lost);
+    FAIL() << "of three particles two are left, and none went out";
+  } catch (const RunError& error) {
+    expect_parts(error, {"3 particles went in, 0 left through outlets, 2 are left at t = 5e-06 s: 1 lost"});
+  }
+}
+
 // ---- a sound bed: every watch on, at every step, and the bits stay
 
 TEST(Watch, a_sound_bed_is_left_alone_to_the_bit) {
