@@ -103,6 +103,7 @@ int run(const Arguments& a) {
     fmt::print(stderr, "scree: interrupted; the results so far are complete\n");
   if (result.status != scree::RunStatus::done && !result.checkpoint.empty())
     fmt::print(stderr, "scree: `scree resume {}` goes on from {}\n", result.out.string(), result.checkpoint);
+  if (result.bad_input) return kBadInput;
   return result.status == scree::RunStatus::done     ? kDone
          : result.status == scree::RunStatus::failed ? kFailed
                                                      : kInterrupted;

@@ -95,8 +95,27 @@ std::shared_ptr<spdlog::logger> make_log(const std::filesystem::path& out, bool 
   }
 }
 
-// Whatever ends the run, its state stays behind: complete where it was interrupted, as it is where it failed.
+// A file that a stage reads is wrong.
+struct BadInput : RunError {
+  using RunError::RunError;
+};
+
+// Writes a checkpoint after a failure; what keeps it from being written is added to the failure.
+template <class Failure, class Write>
+void leave_checkpoint(const char* why, const Write& write) {
+  try {
+    write();
+  } catch (const CheckpointError& e) {
+    throw Failure(fmt::format("{}; and {}", why, e.what()));
+  }
+}
+
+// Whatever ends the run, its state stays behind: complete where it was interrupted or a stage could not begin, as it is
+// where it failed. Memory that ran out leaves half a step, which shows nothing: there the checkpoint before counts.
 void run_or_leave_a_checkpoint(Simulation& simulation) {
+  const auto leave_failed = [&](const char* why) {
+    leave_checkpoint<RunError>(why, [&] { simulation.write_failed_checkpoint(why); });
+  };
   try {
     simulation.run();
   } catch (const Interrupted&) {
@@ -105,12 +124,16 @@ void run_or_leave_a_checkpoint(Simulation& simulation) {
   } catch (const CheckpointError&) {
     throw;
   } catch (const RunError& failure) {
-    try {
-      simulation.write_failed_checkpoint(failure.what());
-    } catch (const CheckpointError& e) {
-      throw RunError(fmt::format("{}; and {}", failure.what(), e.what()));
-    }
+    leave_failed(failure.what());
     throw;
+  } catch (const CaseError& e) {  // of a read stage, before it inserts: resumed when the file is mended
+    leave_checkpoint<BadInput>(e.what(), [&] { simulation.write_checkpoint(); });
+    throw BadInput(e.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& failure) {  // of a library: nothing that a run expects
+    leave_failed(failure.what());
+    throw RunError(failure.what());
   }
 }
 
@@ -181,6 +204,9 @@ RunResult run_case(const Case& c, const RunOptions& options) {
   } catch (const Interrupted&) {
     result.status = RunStatus::interrupted;
     log->warn("interrupted at t = {:.6g} s", simulation->engine().time());
+  } catch (const BadInput& e) {
+    fail(e.what());
+    result.bad_input = true;
   } catch (const RunError& e) {
     fail(e.what());
     failed_at = e.where;
@@ -204,10 +230,10 @@ RunResult run_case(const Case& c, const RunOptions& options) {
                               kFailureReach * largest_radius(c));
     if (c.output.final_vtk) write_particles_vtp(options.out / "particles.vtp", simulation->engine().particles());
     log->info("{}", text(result.status));
-  } catch (const RunError& e) {
-    fail(result.message.empty() ? e.what() : result.message + "; and " + e.what());
   } catch (const std::bad_alloc&) {
     fail(result.message.empty() ? kOutOfMemory : result.message + "; and no memory is left for the results");
+  } catch (const std::exception& e) {
+    fail(result.message.empty() ? e.what() : result.message + "; and " + e.what());
   }
   return result;
 }

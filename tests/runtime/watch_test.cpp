@@ -85,6 +85,16 @@ TEST(Watch, a_particle_that_is_too_fast) {
   expect_near(error, at, 1e-9);
 }
 
+TEST(Watch, a_velocity_that_is_not_a_number) {
+  const auto engine = make_engine(ceramic_case(kBox));
+  const Vec3 at{0.001, 0, 0};
+  engine->insert(std::vector{grain({0, 0, 0}), grain(at, kRadius, {0, std::nan(""), 0})});
+  const RunError error = stopped(*engine, 1);
+  expect_parts(error, {"the velocity of particle 1, which was at (0.001, 0, 0) m, is not a number at t = 5e-06 s",
+                       "use a smaller [time] step (now 5e-06 s)"});
+  expect_near(error, at, 1e-9);
+}
+
 // ---- a missed rebuild
 
 // Two particles that touch each other, one that touches a floor, and lists made by hand.
@@ -164,6 +174,28 @@ TEST(Watch, a_pair_across_a_periodic_border_counts) {
   ASSERT_TRUE(missing);
   EXPECT_EQ(missing->i, 0u);
   EXPECT_EQ(missing->j, 1u);
+}
+
+// The engine's own look, on lists that were made when the second particle was elsewhere.
+TEST(Watch, a_contact_that_the_engines_lists_do_not_hold) {
+  const Case c = ceramic_case(kBox);
+  EngineOptions options;
+  options.list_check_interval = 1;
+  const auto sound = make_engine(c, options);
+  const Vec3 at{0.001, 0, 0};
+  sound->insert(std::vector{grain(at), grain({0.008, 0, 0})});
+  run_steps(*sound, 3);
+  const auto moved = saved_and_loaded(*sound, c, options, [&](StoredArrays& arrays) {
+    std::vector<char>& bytes = arrays.at("engine/particles").bytes;
+    std::vector<Particle<float>> records(2);
+    std::memcpy(static_cast<void*>(records.data()), bytes.data(), bytes.size());
+    for (Particle<float>& p : records)
+      if (p.id() == 1) p.x = at.x + 1.9 * kRadius;
+    std::memcpy(bytes.data(), records.data(), bytes.size());
+  });
+  const RunError error = stopped(*moved, 1);
+  expect_parts(error, {"touches particle", "at t = 2e-05 s", "the contact lists do not hold it", "please report"});
+  expect_near(error, at, 2 * kRadius);
 }
 
 // ---- energy and time step
