@@ -19,7 +19,6 @@ inline constexpr uint32_t kChunk =
 
 inline constexpr double kMaxOverlapShare =
     0.5;  // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted
-inline constexpr double kMaxTravelShare = 0.2;  // of the smallest radius, in one step
 
 template <class Real>
 class Domain final : public Engine {

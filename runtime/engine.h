@@ -49,6 +49,9 @@ struct ContactState {
   double elastic_energy{};  // J, of the normal spring
 };
 
+// Of the smallest radius: a particle that moves further in one step stops the run.
+inline constexpr double kMaxTravelShare = 0.2;
+
 // The run cannot go on: what happened, where, and what to change.
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -79,7 +80,9 @@ std::vector<std::string> Watch::look(const Engine& engine) {
   check_count(engine);
   if (engine.count() == 0) return {};
   check_energy(engine);
-  return check_step(engine);
+  std::vector<std::string> warnings = check_step(engine);
+  for (std::string& warning : check_spin(engine)) warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 void Watch::check_energy(const Engine& engine) {
@@ -122,6 +125,30 @@ std::vector<std::string> Watch::check_step(const Engine& engine) {
   if (share <= kWarnAt || warned_) return {};
   warned_ = true;
   return {fmt::format("{}; above {} contacts are badly resolved, above {} the run stops", text, kWarnAt, kStopAt)};
+}
+
+// A spin moves no particle through anything, so one whose surface is faster than a particle may be only resolves
+// friction badly: a warning. One that is not a number would spread by the next contact.
+std::vector<std::string> Watch::check_spin(const Engine& engine) {
+  const double limit = kMaxTravelShare * smallest_radius(case_) / engine.dt();
+  const auto surface_speed = [](const ParticleState& p) { return norm(p.spin) * p.radius; };
+  const double beyond =
+      engine.sum([&](const ParticleState& p) { return surface_speed(p) <= limit ? 0.0 : 1.0; });  // NaN too
+  if (beyond == 0) return {};
+  const std::vector<ParticleState> all = engine.particles();
+  const auto nan = std::ranges::find_if(all, [](const ParticleState& p) { return std::isnan(norm(p.spin)); });
+  if (nan != all.end())
+    throw RunError(fmt::format("the spin of particle {} at ({:.6g}, {:.6g}, {:.6g}) m is not a number at t = {:.6g} s: "
+                               "use a smaller [time] step (now {:.4g} s)",
+                               nan->id, nan->position.x, nan->position.y, nan->position.z, engine.time(), engine.dt()),
+                   nan->position);
+  if (std::exchange(warned_of_spin_, true)) return {};
+  const ParticleState p = *std::ranges::max_element(all, {}, surface_speed);
+  return {fmt::format(
+      "the surface of particle {} at ({:.6g}, {:.6g}, {:.6g}) m spins at {:.4g} m/s at t = {:.6g} s, more than {:.4g} "
+      "m/s = {} radii in a step: friction is badly resolved there; use a smaller [time] step (now {:.4g} s)",
+      p.id, p.position.x, p.position.y, p.position.z, surface_speed(p), engine.time(), limit, kMaxTravelShare,
+      engine.dt())};
 }
 
 }  // namespace scree

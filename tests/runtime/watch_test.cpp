@@ -85,6 +85,27 @@ TEST(Watch, a_particle_that_is_too_fast) {
   expect_near(error, at, 1e-9);
 }
 
+// Of a speed that only single precision finds beyond the limit the particle is named, too.
+TEST(Watch, a_particle_that_is_too_fast_by_rounding) {
+  Case c = ceramic_case(kBox);
+  float speed = 0;
+  for (int k = 0; k < 10000 && speed == 0; ++k) {
+    const double step = kStep * (1 + 1e-8 * k), limit = kMaxTravelShare * grain({}).radius / step;
+    const auto nearest = static_cast<float>(limit);
+    if (nearest <= limit && nearest * nearest > static_cast<float>(limit * limit)) c.time.step = step, speed = nearest;
+  }
+  if (speed == 0) GTEST_SKIP() << "no step rounds so";
+  const auto engine = make_engine(c);
+  engine->insert(std::vector{grain({0, 0, 0}), grain({0.001, 0, 0}, kRadius, {0, speed, 0})});
+  expect_parts(stopped(*engine, 1), {"particle 1 at (0.001,", "radii in a step"});
+}
+
+TEST(Watch, a_position_that_is_not_a_number) {
+  const auto engine = make_engine(ceramic_case(kBox));
+  engine->insert(std::vector{grain({0, 0, 0}), grain({0, std::nan(""), 0})});
+  expect_parts(stopped(*engine, 1), {"particle 1 left the domain at (0, nan, 0) m, t = 0 s"});
+}
+
 TEST(Watch, a_velocity_that_is_not_a_number) {
   const auto engine = make_engine(ceramic_case(kBox));
   const Vec3 at{0.001, 0, 0};
@@ -313,6 +334,35 @@ TEST(Watch, a_lost_particle_stops_the_run_at_the_next_look) {
     FAIL() << "of three particles two are left, and none went out";
   } catch (const RunError& error) {
     expect_parts(error, {"3 particles went in, 0 left through outlets, 2 are left at t = 5e-06 s: 1 lost"});
+  }
+}
+
+TEST(Watch, a_spin_too_large_for_the_step_warns_once_and_one_that_is_no_number_stops) {
+  const Case c = ceramic_case(kBox);
+  const auto spinning = [&](double spin) {
+    auto engine = make_engine(c);
+    ParticleState p = grain({0.002, 0, 0});
+    p.spin = {0, spin, 0};
+    engine->insert(std::vector{grain({0.001, 0, 0}), p});
+    run_steps(*engine, 1);
+    return engine;
+  };
+  const double limit = kMaxTravelShare / kStep;  // rad/s
+  EXPECT_TRUE(Watch(c).look(*spinning(0.99 * limit)).empty());
+  Watch watch(c);
+  const auto engine = spinning(1.5 * limit);
+  const std::vector<std::string> warnings = watch.look(*engine);
+  ASSERT_EQ(warnings.size(), 1u);
+  for (const char* part : {"the surface of particle 1 at (0.002, 0, 0) m spins at 12 m/s", "t = 5e-06 s", "[time] step"})
+    EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
+  run_steps(*engine, 500);
+  EXPECT_TRUE(watch.look(*engine).empty());
+  try {
+    Watch(c).look(*spinning(std::nan("")));
+    FAIL() << "a spin is not a number";
+  } catch (const RunError& error) {
+    expect_parts(error, {"the spin of particle 1 at (0.002, 0, 0) m is not a number", "t = 5e-06 s"});
+    expect_near(error, {0.002, 0, 0}, 1e-9);
   }
 }
 
