@@ -82,7 +82,7 @@ class Domain final : public Engine {
   void advance_chunks();
   void add_closing();
   void add_profile(const ChunkOutcome& all);
-  void book(double& kinetic, double (&momentum)[3], const ParticleState& s) const;
+  void book(double& kinetic, double& potential, double (&momentum)[3], const ParticleState& s) const;
 
   // runtime/domain_watch.cpp
   [[noreturn]] void fail_step(const ChunkOutcome& outcome) const;

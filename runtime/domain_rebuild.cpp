@@ -178,7 +178,7 @@ std::vector<uint8_t> Domain<Real>::take_out_leavers() {
       counters_.removed_mass.resize(where[k] + 1, 0.0);
     const ParticleState s = state(k);
     counters_.removed_mass[where[k]] += s.mass;
-    book(counters_.ledger.removed_kinetic, counters_.ledger.removed_momentum, s);
+    book(counters_.ledger.removed_kinetic, counters_.ledger.removed_potential, counters_.ledger.removed_momentum, s);
   }
   return gone;
 }

@@ -98,6 +98,7 @@ int run(const Arguments& a) {
     fmt::print("no steady mass flow: the run has no drain, or its discharge has no plateau (see mass_flow.csv)\n");
   fmt::print("results in {}\n", std::filesystem::absolute(result.out).string());
   if (std::filesystem::exists(result.out / "summary.json")) report_on(result.out);
+  if (!result.warning.empty()) fmt::print(stderr, "scree: warning: {}\n", result.warning);
   if (result.status == scree::RunStatus::failed) fmt::print(stderr, "scree: the run failed: {}\n", result.message);
   if (result.status == scree::RunStatus::interrupted)
     fmt::print(stderr, "scree: interrupted; the results so far are complete\n");

@@ -38,6 +38,7 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
   nlohmann::json j;
   j["title"] = c.title, j["case"] = simulation.state().source, j["status"] = text(result.status);
   if (!result.message.empty()) j["message"] = result.message;
+  if (!result.warning.empty()) j["warning"] = result.warning;
   j["particles"] = k.inserted, j["particles_left"] = e.count(), j["steps"] = k.steps;
   j["time_step_s"] = e.dt(), j["physical_time_s"] = e.time(), j["wall_time_s"] = wall;
   j["particle_steps"] = k.particle_steps,
@@ -72,7 +73,7 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
                            {"particles", r.particles}});
   j["checkpoints"] = {{"written", simulation.checkpoints_written()}, {"seconds", simulation.checkpoint_seconds()}};
   j["resumed_from"] = simulation.resumed_from().empty() ? nlohmann::json() : nlohmann::json(simulation.resumed_from());
-  if (c.output.energy_ledger) j["energy"] = to_json(balance_of(e));
+  if (c.output.energy_ledger) j["energy"] = to_json(balance_of(e, c));
   for (const auto& o : simulation.observers())
     if (const nlohmann::json own = o->summary(); !own.is_null()) j[o->name()] = own;
   j["wall_seconds"] = {{"step", k.step_seconds},
@@ -224,6 +225,8 @@ RunResult run_case(const Case& c, const RunOptions& options) {
       result.profile = profile_table(profile_of(k, thread_count(), simulation->wall_seconds()), k.particle_steps);
       log->info("where the time went:\n{}", result.profile);
     }
+    if (c.output.energy_ledger) result.warning = complaint(balance_of(simulation->engine(), c));
+    if (!result.warning.empty()) log->warn(result.warning);
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
     if (failed_at)
       write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine().particles(), *failed_at,

@@ -29,6 +29,7 @@ struct RunResult {
   RunStatus status = RunStatus::done;
   std::string message;     // why it failed
   bool bad_input = false;  // it failed by a file that a stage reads
+  std::string warning;     // the ledger does not close; empty: it does, or there is none
   std::optional<SteadyFlow> steady;
   std::filesystem::path out;
   std::string profile;     // a table, when EngineOptions::profile is set
