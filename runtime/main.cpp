@@ -198,6 +198,10 @@ void add_run_options(CLI::App& command, Arguments& a) {
       .add_option("--checkpoint-every", a.checkpoint_every,
                   "wall-clock seconds between checkpoints (default: the case's checkpoint.interval, 600)")
       ->check(CLI::PositiveNumber);
+  command.add_option("--check-lists", a.check_lists,
+                     "steps between proofs by a fresh search that no contact is missing from the lists (default "
+                     "20000; 0: none; 1: every step, for finding errors of the program)");
+  command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   command.add_flag("--profile", a.profile, "print at the end where the time went, part by part of the step");
 }
 
@@ -227,10 +231,6 @@ int command_line(int argc, char** argv) {
   resume_command.add_option("DIR", a.out, "its results folder")->required();
   add_threads_option(resume_command, a);
   add_run_options(resume_command, a);
-  run_command.add_option("--check-lists", a.check_lists,
-                         "steps between proofs by a fresh search that no contact is missing from the lists (default "
-                         "20000; 0: none; 1: every step, for finding errors of the program)");
-  run_command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   CLI::App& check_command = *app.add_subcommand("check", "validate a case and print what would run");
   add_case_options(check_command, a);
   scree::RenderArguments pictures;

@@ -186,6 +186,15 @@ TEST_F(Faults, ResumeWithoutAFolderTakesTheNewestOfTheCase) {
   EXPECT_FALSE(fs::exists(path("results") / "every_stage-3"));
 }
 
+TEST_F(Faults, ResumeTakesTheOptionsOfARun) {
+  const fs::path out = path("options");
+  const auto all = checkpoints_in(undisturbed());
+  make_died_run(out, all[all.size() / 2]);
+  fs::copy(undisturbed() / "case.toml", out / "case.toml");
+  ASSERT_EQ(execute({"resume", out.string(), "--check-lists", "1", "--force-memory"}), 0) << said_;
+  expect_undisturbed(out);
+}
+
 TEST_F(Faults, ResumeOfWhatIsNoRunIsBadInput) {
   EXPECT_EQ(execute({"resume", path("nothing").string()}), 2);
   EXPECT_NE(said_.find("case.toml"), std::string::npos) << said_;
