@@ -31,6 +31,7 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
       brute_force_solid_(options.brute_force_solid),
       check_interval_(options.list_check_interval),
       fixed_skin_(options.skin > 0 ? options.skin : c.neighbour.skin),
+      max_overlap_share_(c.watch.max_overlap),
       kinds_(static_cast<uint32_t>(c.kinds.size())),
       ledger_(c.output.energy_ledger) {
   for (int a = 0; a < 3; ++a) periodic_[a] = c.periodic[a];
@@ -161,7 +162,7 @@ void Domain<Real>::step() {
   add_closing();
   ++counters_.steps;
   counters_.particle_steps += count_;
-  if (all.too_fast || all.max_pair_overlap > kMaxOverlapShare || all.max_solid_overlap > kMaxOverlapShare)
+  if (all.too_fast || all.max_pair_overlap > max_overlap_share_ || all.max_solid_overlap > max_overlap_share_)
     fail_step(all);
   if (check_interval_ > 0 && counters_.steps % check_interval_ == 0) check_lists();
 }

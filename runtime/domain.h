@@ -17,8 +17,7 @@ namespace scree {
 inline constexpr uint32_t kChunk =
     2048;  // particles in a chunk, at most: its records and force rows fit a core's cache
 
-inline constexpr double kMaxOverlapShare =
-    0.5;  // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted
+inline constexpr double kBuriedShare = 0.5;  // of R_i: a centre nearer to the solid than that goes through it
 
 template <class Real>
 class Domain final : public Engine {
@@ -120,6 +119,7 @@ class Domain final : public Engine {
   bool brute_force_solid_;
   uint64_t check_interval_;
   double fixed_skin_;
+  double max_overlap_share_;
   uint32_t kinds_;
   bool ledger_;
   StepSettings settings_{};

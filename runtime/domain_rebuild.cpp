@@ -242,7 +242,7 @@ void Domain<Real>::search_solids() {
   parallel_for(chunks(), [&](size_t c) {
     outcomes[c] =
         search_solid<Real>({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, solid_reach, index_.get(),
-                            &prepared_, &tables_, old_index_.data(), &history_, &contacts_[c], 1 - kMaxOverlapShare});
+                            &prepared_, &tables_, old_index_.data(), &history_, &contacts_[c], kBuriedShare});
   });
   for (const SolidSearchOutcome& o : outcomes) {
     if (o.buried != count_) fail_buried(o.buried, o.buried_in);

@@ -41,15 +41,16 @@ void Domain<Real>::fail_overlap(bool pair) const {
   else
     for (uint32_t i = 0; i < count_; ++i) look_at_solid(i);
   if (worst == 0)  // nothing that a case can bring about: the kernels saw one among these
-    throw RunError(fmt::format("the overlap of a particle with {} was beyond {} at t = {:.6g} s, and none is found that "
-                               "is: this is an error of the program, please report it with the case",
-                               pair ? "another" : "a wall or fibre", kMaxOverlapShare, time()));
+    throw RunError(
+        fmt::format("the overlap of a particle with {} was beyond {} at t = {:.6g} s, and none is found that "
+                    "is: this is an error of the program, please report it with the case",
+                    pair ? "another" : "a wall or fibre", max_overlap_share_, time()));
   const ParticleState s = state_of(next_[of]);
   throw RunError(fmt::format("particle {} at {} overlaps {} by {:.3g} of {} at t = {:.6g} s (limit {}): use a smaller "
                              "[time] step (now {:.4g} s) or a larger youngs_modulus",
                              s.id, text_of(s.position),
                              pair ? fmt::format("particle {}", state_of(next_[with]).id) : wall_of_image(with), worst,
-                             pair ? "the sum of the radii" : "its radius", time(), kMaxOverlapShare, settings_.dt),
+                             pair ? "the sum of the radii" : "its radius", time(), max_overlap_share_, settings_.dt),
                  s.position);
 }
 
@@ -57,7 +58,7 @@ void Domain<Real>::fail_overlap(bool pair) const {
 // within the limit by a bit.
 template <class Real>
 void Domain<Real>::fail_step(const ChunkOutcome& outcome) const {
-  if (!outcome.too_fast) fail_overlap(outcome.max_pair_overlap > kMaxOverlapShare);
+  if (!outcome.too_fast) fail_overlap(outcome.max_pair_overlap > max_overlap_share_);
   uint32_t fastest = 0;
   double most = -1;
   for (uint32_t k = 0; k < count_; ++k) {

@@ -47,10 +47,11 @@ EnergyBalance balance_of(const Engine& engine, const Case& c) {
 
 std::string complaint(const EnergyBalance& b) {
   if (b.closes()) return "";
-  return fmt::format("the ledger does not close: {:.2g} of the energy and {:.2g} of the momentum turned over are not "
-                     "accounted for, more than the tolerance {:g}: do not trust the results, and try a smaller [time] "
-                     "step",
-                     b.energy_residual_share(), b.momentum_residual_share(), kLedgerTolerance);
+  return fmt::format(
+      "the ledger does not close: {:.2g} of the energy and {:.2g} of the momentum turned over are not "
+      "accounted for, more than the tolerance {:g}: do not trust the results, and try a smaller [time] "
+      "step",
+      b.energy_residual_share(), b.momentum_residual_share(), kLedgerTolerance);
 }
 
 nlohmann::json to_json(const EnergyBalance& b) {

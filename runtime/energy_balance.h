@@ -33,8 +33,8 @@ struct EnergyBalance {
   double gravity = 0, walls = 0, elastic = 0, damping = 0, friction = 0, rolling = 0;
   std::optional<double> potential;
   double time_stepping = 0, energy_residual = 0;
-  double turned_over = 0;      // J: |gravity| + |walls| + inserted
-  Vec3 momentum_residual{};    // N s
+  double turned_over = 0;          // J: |gravity| + |walls| + inserted
+  Vec3 momentum_residual{};        // N s
   double impulse_turned_over = 0;  // N s
 
   double energy_residual_share() const { return turned_over > 0 ? std::abs(energy_residual) / turned_over : 0; }

@@ -224,7 +224,8 @@ int command_line(int argc, char** argv) {
   CLI::App& run_command = *app.add_subcommand("run", "run a case");
   add_case_options(run_command, a);
   run_command.add_option("--out", a.out, "results folder (default: results/<case>, or the next free name)");
-  run_command.add_flag("--resume", a.resume, "go on from the newest checkpoint in the results folder, if it has one\n(without --out: the "
+  run_command.add_flag("--resume", a.resume,
+                       "go on from the newest checkpoint in the results folder, if it has one\n(without --out: the "
                        "newest of results/<case>, results/<case>-2, ...)");
   add_run_options(run_command, a);
   CLI::App& resume_command = *app.add_subcommand("resume", "go on with an unfinished run from its newest checkpoint");

@@ -40,8 +40,8 @@ struct RunResult {
 // options.out, whatever the end, checkpoints on the way, and failure.vtp, the particles round the place, when a check
 // stopped the run. A run that was resumed leaves the same as one that was never interrupted. Throws CaseError for a
 // case that cannot start, before anything is written if it needs more memory than there is, RunRefused
-// (runtime/run_folder.h) when the folder is in use or holds nothing that can be gone on from. Once it has begun a failed
-// run is a result, whatever failed it, with a summary and a checkpoint where they can be written.
+// (runtime/run_folder.h) when the folder is in use or holds nothing that can be gone on from. Once it has begun a
+// failed run is a result, whatever failed it, with a summary and a checkpoint where they can be written.
 RunResult run_case(const Case& c, const RunOptions& options);
 
 // What `scree check` prints: what will run, its time scales, memory (runtime/describe_case.cpp).

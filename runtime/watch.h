@@ -1,6 +1,6 @@
-// What a run watches now and then, beside what every step checks: that no particle is lost, that kinetic energy does not
-// come from nowhere, and that the time step resolves contacts at the speeds and spins that are seen. Reads only; a look costs less
-// than a step.
+// What a run watches now and then, beside what every step checks: that no particle is lost, that kinetic energy does
+// not come from nowhere, and that the time step resolves contacts at the speeds and spins that are seen. Reads only; a
+// look costs less than a step.
 #pragma once
 
 #include <optional>

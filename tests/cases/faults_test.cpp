@@ -172,7 +172,10 @@ TEST_F(Faults, NoPlaceForCheckpointsStopsTheRunWithItsName) {
 
 // Without --out a run goes on in the newest folder of its case, and begins one where there is none.
 TEST_F(Faults, ResumeWithoutAFolderTakesTheNewestOfTheCase) {
-  const auto here = [&] { std::error_code failed; fs::current_path(folder_.path(), failed); };
+  const auto here = [&] {
+    std::error_code failed;
+    fs::current_path(folder_.path(), failed);
+  };
   const auto all = checkpoints_in(undisturbed());
   const fs::path first = path("results") / "every_stage", second = path("results") / "every_stage-2";
   ASSERT_EQ(execute({"run", case_, "--resume"}, here), 0) << said_;

@@ -76,6 +76,18 @@ TEST(Watch, two_particles_that_overlap_too_much) {
   expect_near(error, {0.002, 0, 0}, kRadius);
 }
 
+TEST(Watch, two_particles_that_overlap_more_than_the_case_allows) {
+  Case c = ceramic_case(kBox);
+  const std::vector<ParticleState> pair{grain({0, 0, 0}), grain({1.8 * kRadius, 0, 0})};
+  const auto usual = make_engine(c);
+  usual->insert(pair);
+  EXPECT_NO_THROW(run_steps(*usual, 1));
+  c.watch.max_overlap = 0.05;
+  const auto strict = make_engine(c);
+  strict->insert(pair);
+  expect_parts(stopped(*strict, 1), {"overlaps particle", "by 0.1 of the sum of the radii", "(limit 0.05)"});
+}
+
 TEST(Watch, a_particle_that_is_too_fast) {
   const auto engine = make_engine(ceramic_case(kBox));
   const Vec3 at{0.001, 0, 0};
@@ -353,7 +365,8 @@ TEST(Watch, a_spin_too_large_for_the_step_warns_once_and_one_that_is_no_number_s
   const auto engine = spinning(1.5 * limit);
   const std::vector<std::string> warnings = watch.look(*engine);
   ASSERT_EQ(warnings.size(), 1u);
-  for (const char* part : {"the surface of particle 1 at (0.002, 0, 0) m spins at 12 m/s", "t = 5e-06 s", "[time] step"})
+  for (const char* part :
+       {"the surface of particle 1 at (0.002, 0, 0) m spins at 12 m/s", "t = 5e-06 s", "[time] step"})
     EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
   run_steps(*engine, 500);
   EXPECT_TRUE(watch.look(*engine).empty());
