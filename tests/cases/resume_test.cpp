@@ -155,12 +155,18 @@ void change_the_format(const fs::path& path) {
   file.put(77);
 }
 
+void put_another_cases(const fs::path& path) {
+  FinishedRun other(kStageEndsOnly, {"seed=12"});
+  fs::copy_file(checkpoints_in(other.out()).front(), path, fs::copy_options::overwrite_existing);
+}
+
 const Fault kFaults[] = {
     {"truncated", [](const fs::path& p) { fs::resize_file(p, fs::file_size(p) * 2 / 3); }, "truncated"},
     {"empty", [](const fs::path& p) { fs::resize_file(p, 0); }, "not a checkpoint"},
     {"bits flipped", flip_the_middle, "damaged"},
     {"not HDF5", [](const fs::path& p) { std::ofstream(p) << std::string(9000, '#'); }, "not a checkpoint"},
     {"other version", change_the_format, "another version"},
+    {"of another case", put_another_cases, "it belongs to another case: key 'seed' was 12 and is now 1"},
     {"a folder of that name", [](const fs::path& p) { fs::remove(p), fs::create_directory(p); }, "cannot be read"},
 };
 
