@@ -23,7 +23,9 @@ class SmallDisk {
     if (!mounted_) why_ = std::strerror(errno);
   }
   ~SmallDisk() {
-    if (mounted_) EXPECT_EQ(umount(folder_.c_str()), 0);
+    if (mounted_) {
+      EXPECT_EQ(umount(folder_.c_str()), 0);
+    }
   }
   SmallDisk(const SmallDisk&) = delete;
 
