@@ -319,11 +319,11 @@ struct BadBeads {
 
 TEST(Failure, ByOverlapOrSpeedNamesTheParticleAndLeavesFiles) {
   for (const BadBeads& bad :
-       {BadBeads{"overlap", "0, 0, 0.032, 0.00075, 0, 0, 0\n0, 0, 0.0325, 0.00075, 0, 0, 0\n", "overlaps particle"},
+       {BadBeads{"overlap", "0, 0, 0.032, 0.00075, 0, 0, 0\n0, 0, 0.0334, 0.00075, 0, 0, 0\n", "overlaps particle"},
         BadBeads{"speed", "0, 0, 0.03, 0.00075, 500, 0, 0\n", "moves at 500 m/s"}}) {
     SCOPED_TRACE(bad.what);
     const TemporaryFolder folder;
-    const Case c = read_case(write_every_stage(folder.path()));
+    const Case c = read_case(write_every_stage(folder.path()), {"watch.max_overlap=0.05"});
     std::ofstream(folder.path() / "beads.csv") << "x, y, z, radius, vx, vy, vz\n" << bad.rows;
     RunOptions options;
     options.out = folder.path() / "out";
