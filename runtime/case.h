@@ -193,6 +193,11 @@ struct TimeSettings {
   bool allow_large_step = false;   // go on above half the Rayleigh time
 };
 
+struct WatchSettings {
+  double max_overlap =
+      0.5;  // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted, the run stops
+};
+
 struct NeighbourSettings {
   double skin = 0;  // m; 0: chosen by the program
 };
@@ -209,6 +214,7 @@ struct Case {
   ContactSettings contact;
   TimeSettings time;
   NeighbourSettings neighbour;
+  WatchSettings watch;
   std::vector<ParticleKind> kinds;
   Solid solid;            // fibres and walls
   struct Fibres {         // what was generated, for the report

@@ -29,6 +29,7 @@ constexpr Range kDiameter{1e-7, 10, "m", false};
 constexpr Range kFraction = positive(1, "");
 constexpr double kLeastShare = 0.01;  // of a distribution that its limits may leave: diameters are drawn until one fits
 constexpr double kMostRows = 1e8;     // of mass_flow.csv
+constexpr double kMostOverlap = 0.5;  // as a share: a deeper one could go through a wall between two rebuilds, unseen
 
 void read_list(TableReader& t, SizeDistribution& size) {
   size.diameters = t.numbers("diameters", kDiameter, 0);
@@ -179,6 +180,9 @@ void read_settings(TableReader& top, Case& c) {
   TableReader neighbour = top.table("neighbour");
   c.neighbour.skin = neighbour.number("skin", between(0, 1, "m (0: chosen by the program)"), 0);
   neighbour.finish();
+  TableReader watch = top.table("watch");
+  c.watch.max_overlap = watch.number("max_overlap", positive(kMostOverlap, "of the radius"), c.watch.max_overlap);
+  watch.finish();
   read_output(top.table("output"), c.output);
   read_checkpoint(top.table("checkpoint"), c.checkpoint);
 }

@@ -7,7 +7,7 @@
 
 namespace scree {
 
-void read_settings(TableReader& top, Case& c);   // title, seed, gravity, [contact], [neighbour], [output], [checkpoint]
+void read_settings(TableReader& top, Case& c);   // title, seed, gravity, [contact], [neighbour], [watch] ...
 void read_materials(TableReader& top, Case& c);  // [[material]]
 void read_particles(TableReader& top, Case& c);  // [[particles]]
 void read_regions(TableReader& top, Case& c);    // [[region]]

@@ -13,6 +13,7 @@ namespace scree {
 class Checksum {
  public:
   void add(const void* data, size_t size) {
+    if (size == 0) return;  // `data` may be null then
     const auto* bytes = static_cast<const unsigned char*>(data);
     total_ += size;
     if (filled_ > 0) {  // complete the stripe that an earlier piece began

@@ -31,6 +31,7 @@ Domain<Real>::Domain(const Case& c, const EngineOptions& options)
       brute_force_solid_(options.brute_force_solid),
       check_interval_(options.list_check_interval),
       fixed_skin_(options.skin > 0 ? options.skin : c.neighbour.skin),
+      max_overlap_share_(c.watch.max_overlap),
       kinds_(static_cast<uint32_t>(c.kinds.size())),
       ledger_(c.output.energy_ledger) {
   for (int a = 0; a < 3; ++a) periodic_[a] = c.periodic[a];
@@ -100,18 +101,20 @@ void Domain<Real>::insert(std::span<const ParticleState> particles) {
     p.wx = static_cast<Real>(s.spin.x), p.wy = static_cast<Real>(s.spin.y), p.wz = static_cast<Real>(s.spin.z);
     p.radius = static_cast<Real>(s.radius), p.inverse_mass = static_cast<Real>(1 / s.mass);
     now_[count_++] = p;
-    book(counters_.ledger.inserted_kinetic, counters_.ledger.inserted_momentum, state_of(p));
+    book(counters_.ledger.inserted_kinetic, counters_.ledger.inserted_potential, counters_.ledger.inserted_momentum,
+         state_of(p));
     if (s.radius > max_radius_) max_radius_ = s.radius, index_.reset();
     min_radius_ = min_radius_ == 0 ? s.radius : std::min(min_radius_, s.radius);
     max_speed_ = std::max(max_speed_, norm(s.velocity));
   }
 }
 
-// Adds a particle's kinetic energy and momentum, as its record has them, where there is a ledger.
+// Adds a particle's energy and momentum, as its record has them, where there is a ledger.
 template <class Real>
-void Domain<Real>::book(double& kinetic, double (&momentum)[3], const ParticleState& s) const {
+void Domain<Real>::book(double& kinetic, double& potential, double (&momentum)[3], const ParticleState& s) const {
   if (!ledger_) return;
   kinetic += kinetic_energy(s);
+  potential += potential_energy(s, {settings_.gravity[0], settings_.gravity[1], settings_.gravity[2]});
   momentum[0] += s.mass * s.velocity.x, momentum[1] += s.mass * s.velocity.y, momentum[2] += s.mass * s.velocity.z;
 }
 
@@ -159,7 +162,7 @@ void Domain<Real>::step() {
   add_closing();
   ++counters_.steps;
   counters_.particle_steps += count_;
-  if (all.too_fast || all.max_pair_overlap > kMaxOverlapShare || all.max_solid_overlap > kMaxOverlapShare)
+  if (all.too_fast || all.max_pair_overlap > max_overlap_share_ || all.max_solid_overlap > max_overlap_share_)
     fail_step(all);
   if (check_interval_ > 0 && counters_.steps % check_interval_ == 0) check_lists();
 }

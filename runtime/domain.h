@@ -17,9 +17,7 @@ namespace scree {
 inline constexpr uint32_t kChunk =
     2048;  // particles in a chunk, at most: its records and force rows fit a core's cache
 
-inline constexpr double kMaxOverlapShare =
-    0.5;  // of R_i + R_j, or of R_i at walls: beyond it the contact is not to be trusted
-inline constexpr double kMaxTravelShare = 0.2;  // of the smallest radius, in one step
+inline constexpr double kBuriedShare = 0.5;  // of R_i: a centre nearer to the solid than that goes through it
 
 template <class Real>
 class Domain final : public Engine {
@@ -83,7 +81,7 @@ class Domain final : public Engine {
   void advance_chunks();
   void add_closing();
   void add_profile(const ChunkOutcome& all);
-  void book(double& kinetic, double (&momentum)[3], const ParticleState& s) const;
+  void book(double& kinetic, double& potential, double (&momentum)[3], const ParticleState& s) const;
 
   // runtime/domain_watch.cpp
   [[noreturn]] void fail_step(const ChunkOutcome& outcome) const;
@@ -106,7 +104,8 @@ class Domain final : public Engine {
   static void for_each_field(const Visit& visit) {
     visit("count", &Domain::count_), visit("chunk_size", &Domain::chunk_size_), visit("next_id", &Domain::next_id_);
     visit("max_radius", &Domain::max_radius_), visit("min_radius", &Domain::min_radius_);
-    visit("max_speed", &Domain::max_speed_), visit("skin", &Domain::skin_);
+    visit("max_speed", &Domain::max_speed_), visit("max_overlap", &Domain::max_overlap_);
+    visit("skin", &Domain::skin_);
     visit("travel", &Domain::travel_), visit("lists_valid", &Domain::lists_valid_),
         visit("counters", &Domain::counters_);
     visit("solid_identity", &Domain::solid_identity_), visit("contacts", &Domain::contacts_);
@@ -120,6 +119,7 @@ class Domain final : public Engine {
   bool brute_force_solid_;
   uint64_t check_interval_;
   double fixed_skin_;
+  double max_overlap_share_;
   uint32_t kinds_;
   bool ledger_;
   StepSettings settings_{};

@@ -66,9 +66,9 @@ bool solids_are_sound(const ChunkContacts<Real>& c, const SolidTables<Real>& tab
 template <class Real>
 void Domain<Real>::require_sound_numbers() const {
   require_state(chunk_size_ >= 1 && chunk_size_ <= kChunk, "its chunks have no possible size");
-  require_state(all_finite({max_radius_, min_radius_, max_speed_, skin_, travel_}) && min_radius_ >= 0 &&
-                    max_radius_ >= min_radius_ && max_speed_ >= 0 && skin_ >= 0 && travel_ >= 0,
-                "a radius, speed, skin or way is negative or not a number");
+  require_state(all_finite({max_radius_, min_radius_, max_speed_, max_overlap_, skin_, travel_}) && min_radius_ >= 0 &&
+                    max_radius_ >= min_radius_ && max_speed_ >= 0 && max_overlap_ >= 0 && skin_ >= 0 && travel_ >= 0,
+                "a radius, speed, overlap, skin or way is negative or not a number");
   for (const double period : settings_.period)
     require_state(period == 0 || 2 * max_radius_ < period, "a particle is larger than half a periodic axis");
   require_state(std::ranges::is_sorted(solid_identity_, std::less_equal{}) &&

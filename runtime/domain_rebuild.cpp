@@ -178,7 +178,7 @@ std::vector<uint8_t> Domain<Real>::take_out_leavers() {
       counters_.removed_mass.resize(where[k] + 1, 0.0);
     const ParticleState s = state(k);
     counters_.removed_mass[where[k]] += s.mass;
-    book(counters_.ledger.removed_kinetic, counters_.ledger.removed_momentum, s);
+    book(counters_.ledger.removed_kinetic, counters_.ledger.removed_potential, counters_.ledger.removed_momentum, s);
   }
   return gone;
 }
@@ -242,7 +242,7 @@ void Domain<Real>::search_solids() {
   parallel_for(chunks(), [&](size_t c) {
     outcomes[c] =
         search_solid<Real>({now_.data(), chunk_begin(c), chunk_end(c), count_, &grid_, solid_reach, index_.get(),
-                            &prepared_, &tables_, old_index_.data(), &history_, &contacts_[c], 1 - kMaxOverlapShare});
+                            &prepared_, &tables_, old_index_.data(), &history_, &contacts_[c], kBuriedShare});
   });
   for (const SolidSearchOutcome& o : outcomes) {
     if (o.buried != count_) fail_buried(o.buried, o.buried_in);

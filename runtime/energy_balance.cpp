@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace scree {
 
 namespace {
@@ -16,7 +18,7 @@ Vec3 momentum_of(const Engine& e) {
 
 }  // namespace
 
-EnergyBalance balance_of(const Engine& engine) {
+EnergyBalance balance_of(const Engine& engine, const Case& c) {
   const EnergyLedger& ledger = engine.counters().ledger;
   const StepLedger& steps = ledger.steps;
   EnergyBalance b;
@@ -24,6 +26,12 @@ EnergyBalance balance_of(const Engine& engine) {
   b.inserted_kinetic = ledger.inserted_kinetic, b.removed_kinetic = ledger.removed_kinetic;
   b.gravity = steps.gravity, b.walls = steps.walls;
   b.damping = steps.damping, b.friction = steps.friction, b.rolling = steps.rolling;
+  const double pull[3] = {c.gravity.x, c.gravity.y, c.gravity.z};
+  bool falls_round = false;
+  for (int a = 0; a < 3; ++a) falls_round |= c.periodic[a] && pull[a] != 0;
+  if (!falls_round)
+    b.potential = engine.sum([&](const ParticleState& p) { return potential_energy(p, c.gravity); }) +
+                  ledger.removed_potential - ledger.inserted_potential;
   for (const ContactState& contact : engine.contacts()) b.elastic += contact.elastic_energy;
   b.time_stepping = steps.second_order + b.elastic - steps.elastic;
   b.energy_residual = b.kinetic + b.removed_kinetic + b.elastic + b.damping + b.friction + b.rolling -
@@ -37,11 +45,21 @@ EnergyBalance balance_of(const Engine& engine) {
   return b;
 }
 
+std::string complaint(const EnergyBalance& b) {
+  if (b.closes()) return "";
+  return fmt::format(
+      "the ledger does not close: {:.2g} of the energy and {:.2g} of the momentum turned over are not "
+      "accounted for, more than the tolerance {:g}: do not trust the results, and try a smaller [time] "
+      "step",
+      b.energy_residual_share(), b.momentum_residual_share(), kLedgerTolerance);
+}
+
 nlohmann::json to_json(const EnergyBalance& b) {
   return {{"kinetic_J", b.kinetic},
           {"inserted_kinetic_J", b.inserted_kinetic},
           {"removed_kinetic_J", b.removed_kinetic},
           {"gravity_work_J", b.gravity},
+          {"potential_J", b.potential ? nlohmann::json(*b.potential) : nlohmann::json()},
           {"moving_walls_work_J", b.walls},
           {"elastic_J", b.elastic},
           {"dissipated_by_damping_J", b.damping},

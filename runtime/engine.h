@@ -36,6 +36,11 @@ inline double kinetic_energy(const ParticleState& p) {
   return 0.5 * p.mass * (dot(p.velocity, p.velocity) + 0.4 * p.radius * p.radius * dot(p.spin, p.spin));
 }
 
+// J, -m g.x.
+inline double potential_energy(const ParticleState& p, const Vec3& gravity) {
+  return -p.mass * dot(gravity, p.position);
+}
+
 // A contact as the outside sees it.
 struct ContactState {
   size_t i = 0;             // index into particles()
@@ -49,6 +54,9 @@ struct ContactState {
   double elastic_energy{};  // J, of the normal spring
 };
 
+// Of the smallest radius: a particle that moves further in one step stops the run.
+inline constexpr double kMaxTravelShare = 0.2;
+
 // The run cannot go on: what happened, where, and what to change.
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -60,6 +68,7 @@ struct RunError : std::runtime_error {
 struct EnergyLedger {
   StepLedger steps;
   double inserted_kinetic = 0, removed_kinetic = 0;            // J
+  double inserted_potential = 0, removed_potential = 0;        // J, by height where they went in and out
   double inserted_momentum[3] = {}, removed_momentum[3] = {};  // N s
 
   template <class Visit>
@@ -67,6 +76,8 @@ struct EnergyLedger {
     visit("steps", &EnergyLedger::steps);
     visit("inserted_kinetic", &EnergyLedger::inserted_kinetic);
     visit("removed_kinetic", &EnergyLedger::removed_kinetic);
+    visit("inserted_potential", &EnergyLedger::inserted_potential);
+    visit("removed_potential", &EnergyLedger::removed_potential);
     visit("inserted_momentum", &EnergyLedger::inserted_momentum);
     visit("removed_momentum", &EnergyLedger::removed_momentum);
   }

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,12 +41,14 @@ struct Arguments {
   bool profile = false;
 };
 
-// results/<case>, or the next of results/<case>-2, -3, ... that is free: nothing is overwritten.
-std::filesystem::path default_folder(const std::string& case_file) {
+// results/<case>, or the next of results/<case>-2, -3, ... that is free: nothing is overwritten. To resume: the last of
+// them that is there.
+std::filesystem::path default_folder(const std::string& case_file, bool resume) {
   const std::filesystem::path base = std::filesystem::path("results") / std::filesystem::path(case_file).stem();
-  std::filesystem::path folder = base;
-  for (int k = 2; std::filesystem::exists(folder); ++k) folder = base.string() + fmt::format("-{}", k);
-  return folder;
+  std::filesystem::path folder = base, last = base;
+  for (int k = 2; std::filesystem::exists(folder); ++k)
+    last = std::exchange(folder, base.string() + fmt::format("-{}", k));
+  return resume ? last : folder;
 }
 
 // A page that cannot be written takes nothing from the run.
@@ -64,7 +67,7 @@ int run(const Arguments& a) {
   if (a.checkpoint_every > 0) set.push_back(fmt::format("checkpoint.interval={}", a.checkpoint_every));
   const scree::Case c = scree::read_case(a.case_file, set);
   scree::RunOptions options;
-  options.out = a.out.empty() ? default_folder(a.case_file) : std::filesystem::path(a.out);
+  options.out = a.out.empty() ? default_folder(a.case_file, a.resume) : std::filesystem::path(a.out);
   options.resume = a.resume;
   if (!a.resume && std::filesystem::exists(options.out) && !std::filesystem::is_empty(options.out)) {
     fmt::print(stderr,
@@ -95,11 +98,13 @@ int run(const Arguments& a) {
     fmt::print("no steady mass flow: the run has no drain, or its discharge has no plateau (see mass_flow.csv)\n");
   fmt::print("results in {}\n", std::filesystem::absolute(result.out).string());
   if (std::filesystem::exists(result.out / "summary.json")) report_on(result.out);
+  if (!result.warning.empty()) fmt::print(stderr, "scree: warning: {}\n", result.warning);
   if (result.status == scree::RunStatus::failed) fmt::print(stderr, "scree: the run failed: {}\n", result.message);
   if (result.status == scree::RunStatus::interrupted)
     fmt::print(stderr, "scree: interrupted; the results so far are complete\n");
   if (result.status != scree::RunStatus::done && !result.checkpoint.empty())
     fmt::print(stderr, "scree: `scree resume {}` goes on from {}\n", result.out.string(), result.checkpoint);
+  if (result.bad_input) return kBadInput;
   return result.status == scree::RunStatus::done     ? kDone
          : result.status == scree::RunStatus::failed ? kFailed
                                                      : kInterrupted;
@@ -193,6 +198,10 @@ void add_run_options(CLI::App& command, Arguments& a) {
       .add_option("--checkpoint-every", a.checkpoint_every,
                   "wall-clock seconds between checkpoints (default: the case's checkpoint.interval, 600)")
       ->check(CLI::PositiveNumber);
+  command.add_option("--check-lists", a.check_lists,
+                     "steps between proofs by a fresh search that no contact is missing from the lists (default "
+                     "20000; 0: none; 1: every step, for finding errors of the program)");
+  command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   command.add_flag("--profile", a.profile, "print at the end where the time went, part by part of the step");
 }
 
@@ -215,16 +224,14 @@ int command_line(int argc, char** argv) {
   CLI::App& run_command = *app.add_subcommand("run", "run a case");
   add_case_options(run_command, a);
   run_command.add_option("--out", a.out, "results folder (default: results/<case>, or the next free name)");
-  run_command.add_flag("--resume", a.resume, "go on from the newest checkpoint in the results folder, if it has one");
+  run_command.add_flag("--resume", a.resume,
+                       "go on from the newest checkpoint in the results folder, if it has one\n(without --out: the "
+                       "newest of results/<case>, results/<case>-2, ...)");
   add_run_options(run_command, a);
   CLI::App& resume_command = *app.add_subcommand("resume", "go on with an unfinished run from its newest checkpoint");
   resume_command.add_option("DIR", a.out, "its results folder")->required();
   add_threads_option(resume_command, a);
   add_run_options(resume_command, a);
-  run_command.add_option("--check-lists", a.check_lists,
-                         "steps between proofs by a fresh search that no contact is missing from the lists (default "
-                         "20000; 0: none; 1: every step, for finding errors of the program)");
-  run_command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   CLI::App& check_command = *app.add_subcommand("check", "validate a case and print what would run");
   add_case_options(check_command, a);
   scree::RenderArguments pictures;

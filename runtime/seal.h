@@ -20,7 +20,7 @@ struct SealBroken : std::runtime_error {
 };
 
 // Raise when the content of a checkpoint changes its meaning or a record its layout.
-inline constexpr uint32_t kCheckpointFormat = 4;
+inline constexpr uint32_t kCheckpointFormat = 5;
 
 // Seals the file and forces it to the disk. Throws std::system_error.
 void seal(const std::filesystem::path& path, std::vector<Extent> extents);

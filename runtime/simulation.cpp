@@ -38,6 +38,7 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
   nlohmann::json j;
   j["title"] = c.title, j["case"] = simulation.state().source, j["status"] = text(result.status);
   if (!result.message.empty()) j["message"] = result.message;
+  if (!result.warning.empty()) j["warning"] = result.warning;
   j["particles"] = k.inserted, j["particles_left"] = e.count(), j["steps"] = k.steps;
   j["time_step_s"] = e.dt(), j["physical_time_s"] = e.time(), j["wall_time_s"] = wall;
   j["particle_steps"] = k.particle_steps,
@@ -72,7 +73,7 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
                            {"particles", r.particles}});
   j["checkpoints"] = {{"written", simulation.checkpoints_written()}, {"seconds", simulation.checkpoint_seconds()}};
   j["resumed_from"] = simulation.resumed_from().empty() ? nlohmann::json() : nlohmann::json(simulation.resumed_from());
-  if (c.output.energy_ledger) j["energy"] = to_json(balance_of(e));
+  if (c.output.energy_ledger) j["energy"] = to_json(balance_of(e, c));
   for (const auto& o : simulation.observers())
     if (const nlohmann::json own = o->summary(); !own.is_null()) j[o->name()] = own;
   j["wall_seconds"] = {{"step", k.step_seconds},
@@ -95,8 +96,27 @@ std::shared_ptr<spdlog::logger> make_log(const std::filesystem::path& out, bool 
   }
 }
 
-// Whatever ends the run, its state stays behind: complete where it was interrupted, as it is where it failed.
+// A file that a stage reads is wrong.
+struct BadInput : RunError {
+  using RunError::RunError;
+};
+
+// Writes a checkpoint after a failure; what keeps it from being written is added to the failure.
+template <class Failure, class Write>
+void leave_checkpoint(const char* why, const Write& write) {
+  try {
+    write();
+  } catch (const CheckpointError& e) {
+    throw Failure(fmt::format("{}; and {}", why, e.what()));
+  }
+}
+
+// Whatever ends the run, its state stays behind: complete where it was interrupted or a stage could not begin, as it is
+// where it failed. Memory that ran out leaves half a step, which shows nothing: there the checkpoint before counts.
 void run_or_leave_a_checkpoint(Simulation& simulation) {
+  const auto leave_failed = [&](const char* why) {
+    leave_checkpoint<RunError>(why, [&] { simulation.write_failed_checkpoint(why); });
+  };
   try {
     simulation.run();
   } catch (const Interrupted&) {
@@ -105,12 +125,16 @@ void run_or_leave_a_checkpoint(Simulation& simulation) {
   } catch (const CheckpointError&) {
     throw;
   } catch (const RunError& failure) {
-    try {
-      simulation.write_failed_checkpoint(failure.what());
-    } catch (const CheckpointError& e) {
-      throw RunError(fmt::format("{}; and {}", failure.what(), e.what()));
-    }
+    leave_failed(failure.what());
     throw;
+  } catch (const CaseError& e) {  // of a read stage, before it inserts: resumed when the file is mended
+    leave_checkpoint<BadInput>(e.what(), [&] { simulation.write_checkpoint(); });
+    throw BadInput(e.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& failure) {  // of a library: nothing that a run expects
+    leave_failed(failure.what());
+    throw RunError(failure.what());
   }
 }
 
@@ -181,6 +205,9 @@ RunResult run_case(const Case& c, const RunOptions& options) {
   } catch (const Interrupted&) {
     result.status = RunStatus::interrupted;
     log->warn("interrupted at t = {:.6g} s", simulation->engine().time());
+  } catch (const BadInput& e) {
+    fail(e.what());
+    result.bad_input = true;
   } catch (const RunError& e) {
     fail(e.what());
     failed_at = e.where;
@@ -198,16 +225,18 @@ RunResult run_case(const Case& c, const RunOptions& options) {
       result.profile = profile_table(profile_of(k, thread_count(), simulation->wall_seconds()), k.particle_steps);
       log->info("where the time went:\n{}", result.profile);
     }
+    if (c.output.energy_ledger) result.warning = complaint(balance_of(simulation->engine(), c));
+    if (!result.warning.empty()) log->warn(result.warning);
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
     if (failed_at)
       write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine().particles(), *failed_at,
                               kFailureReach * largest_radius(c));
     if (c.output.final_vtk) write_particles_vtp(options.out / "particles.vtp", simulation->engine().particles());
     log->info("{}", text(result.status));
-  } catch (const RunError& e) {
-    fail(result.message.empty() ? e.what() : result.message + "; and " + e.what());
   } catch (const std::bad_alloc&) {
     fail(result.message.empty() ? kOutOfMemory : result.message + "; and no memory is left for the results");
+  } catch (const std::exception& e) {
+    fail(result.message.empty() ? e.what() : result.message + "; and " + e.what());
   }
   return result;
 }

@@ -27,7 +27,9 @@ enum class RunStatus { done, interrupted, failed };
 
 struct RunResult {
   RunStatus status = RunStatus::done;
-  std::string message;  // why it failed
+  std::string message;     // why it failed
+  bool bad_input = false;  // it failed by a file that a stage reads
+  std::string warning;     // the ledger does not close; empty: it does, or there is none
   std::optional<SteadyFlow> steady;
   std::filesystem::path out;
   std::string profile;     // a table, when EngineOptions::profile is set
@@ -38,8 +40,8 @@ struct RunResult {
 // options.out, whatever the end, checkpoints on the way, and failure.vtp, the particles round the place, when a check
 // stopped the run. A run that was resumed leaves the same as one that was never interrupted. Throws CaseError for a
 // case that cannot start, before anything is written if it needs more memory than there is, RunRefused
-// (runtime/run_folder.h) when the folder is in use or holds nothing that can be gone on from; never RunError: a failed
-// run is a result.
+// (runtime/run_folder.h) when the folder is in use or holds nothing that can be gone on from. Once it has begun a
+// failed run is a result, whatever failed it, with a summary and a checkpoint where they can be written.
 RunResult run_case(const Case& c, const RunOptions& options);
 
 // What `scree check` prints: what will run, its time scales, memory (runtime/describe_case.cpp).

@@ -73,7 +73,7 @@ class Simulation {
       pour_.reset();
       write_checkpoint();
     }
-    check_count();
+    check_count(*engine_);
   }
 
   void write_checkpoint() {
@@ -378,14 +378,6 @@ class Simulation {
     const EngineCounters& k = engine_->counters();
     log_->info("t = {:.6g} s  {} particles  {:.3g} m/s at most  {} steps  {} rebuilds  skin {:.3g} m", engine_->time(),
                engine_->count(), engine_->max_speed(), k.steps, k.rebuilds, engine_->skin());
-  }
-
-  void check_count() const {
-    const EngineCounters& k = engine_->counters();
-    if (k.inserted != k.removed + engine_->count())
-      throw RunError(fmt::format("{} particles went in, {} left through outlets, {} are left: {} lost", k.inserted,
-                                 k.removed, engine_->count(),
-                                 static_cast<int64_t>(k.inserted - k.removed - engine_->count())));
   }
 
   const Case& case_;

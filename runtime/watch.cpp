@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -60,14 +61,28 @@ double EnergyBudget::most_after(const EnergyLook& before, const EnergyLook& now)
   return kMargin * (before.kinetic + from_gravity + from_walls + elastic + at_rest);
 }
 
+void check_count(const Engine& engine) {
+  const EngineCounters& k = engine.counters();
+  if (k.inserted == k.removed + engine.count()) return;
+  throw RunError(fmt::format(
+      "{} particles went in, {} left through outlets, {} are left at t = {:.6g} s: {} lost. This is an error of the "
+      "program, please report it with the case",
+      k.inserted, k.removed, engine.count(), engine.time(),
+      static_cast<int64_t>(k.inserted) - static_cast<int64_t>(k.removed) - static_cast<int64_t>(engine.count())));
+}
+
 Watch::Watch(const Case& c) : case_(c), budget_(c), wall_speed_(largest_wall_speed(c)) {}
 
 std::vector<std::string> Watch::look(const Engine& engine) {
   const uint64_t steps = engine.counters().steps;
-  if (steps < next_step_ || engine.count() == 0) return {};
+  if (steps < next_step_) return {};
   next_step_ = steps + kStepsPerLook;
+  check_count(engine);
+  if (engine.count() == 0) return {};
   check_energy(engine);
-  return check_step(engine);
+  std::vector<std::string> warnings = check_step(engine);
+  for (std::string& warning : check_spin(engine)) warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 void Watch::check_energy(const Engine& engine) {
@@ -110,6 +125,30 @@ std::vector<std::string> Watch::check_step(const Engine& engine) {
   if (share <= kWarnAt || warned_) return {};
   warned_ = true;
   return {fmt::format("{}; above {} contacts are badly resolved, above {} the run stops", text, kWarnAt, kStopAt)};
+}
+
+// A spin moves no particle through anything, so one whose surface is faster than a particle may be only resolves
+// friction badly: a warning. One that is not a number would spread by the next contact.
+std::vector<std::string> Watch::check_spin(const Engine& engine) {
+  const double limit = kMaxTravelShare * smallest_radius(case_) / engine.dt();
+  const auto surface_speed = [](const ParticleState& p) { return norm(p.spin) * p.radius; };
+  const double beyond =
+      engine.sum([&](const ParticleState& p) { return surface_speed(p) <= limit ? 0.0 : 1.0; });  // NaN too
+  if (beyond == 0) return {};
+  const std::vector<ParticleState> all = engine.particles();
+  const auto nan = std::ranges::find_if(all, [](const ParticleState& p) { return std::isnan(norm(p.spin)); });
+  if (nan != all.end())
+    throw RunError(fmt::format("the spin of particle {} at ({:.6g}, {:.6g}, {:.6g}) m is not a number at t = {:.6g} s: "
+                               "use a smaller [time] step (now {:.4g} s)",
+                               nan->id, nan->position.x, nan->position.y, nan->position.z, engine.time(), engine.dt()),
+                   nan->position);
+  if (std::exchange(warned_of_spin_, true)) return {};
+  const ParticleState p = *std::ranges::max_element(all, {}, surface_speed);
+  return {fmt::format(
+      "the surface of particle {} at ({:.6g}, {:.6g}, {:.6g}) m spins at {:.4g} m/s at t = {:.6g} s, more than {:.4g} "
+      "m/s = {} radii in a step: friction is badly resolved there; use a smaller [time] step (now {:.4g} s)",
+      p.id, p.position.x, p.position.y, p.position.z, surface_speed(p), engine.time(), limit, kMaxTravelShare,
+      engine.dt())};
 }
 
 }  // namespace scree

@@ -1,5 +1,6 @@
-// What a run watches now and then, beside what every step checks: that kinetic energy does not come from nowhere, and
-// that the time step resolves contacts at the speeds that are seen. Reads only; a look costs less than a step.
+// What a run watches now and then, beside what every step checks: that no particle is lost, that kinetic energy does
+// not come from nowhere, and that the time step resolves contacts at the speeds and spins that are seen. Reads only; a
+// look costs less than a step.
 #pragma once
 
 #include <optional>
@@ -31,6 +32,9 @@ class EnergyBudget {
   double gravity_, wall_speed_, stiffness_, radius_;
 };
 
+// That every particle that went in is there or left through an outlet. Throws RunError.
+void check_count(const Engine& engine);
+
 class Watch {
  public:
   explicit Watch(const Case& c);
@@ -42,13 +46,14 @@ class Watch {
  private:
   void check_energy(const Engine& engine);
   std::vector<std::string> check_step(const Engine& engine);
+  std::vector<std::string> check_spin(const Engine& engine);
 
   const Case& case_;
   EnergyBudget budget_;
   double wall_speed_;  // m/s
   std::optional<EnergyLook> last_;
   uint64_t next_step_ = 0;
-  bool warned_ = false;
+  bool warned_ = false, warned_of_spin_ = false;
 };
 
 }  // namespace scree

@@ -16,7 +16,7 @@ inline std::string write_every_stage(const std::filesystem::path& folder) {
   std::ofstream(path) << "base = \"" << case_path("examples/regions_and_stages.toml") << "\"\n"
                       << R"(
 time = {rayleigh_fraction = 0.3}
-output = {interval = 1e-3}
+output = {interval = 1e-3, energy_ledger = true}
 
 [[meter]]
 name = "upper_half"
@@ -75,8 +75,9 @@ inline void expect_same_results(const std::filesystem::path& a, const std::files
   EXPECT_EQ(text_of(a / "particles.vtp"), text_of(b / "particles.vtp"));
   const nlohmann::json one = read_summary(a), other = read_summary(b);
   for (const char* key : {"status", "state_hash", "steps", "rebuilds", "particle_steps", "particles", "particles_left",
-                          "mass_discharged_kg", "mass_retained_kg", "stages", "lost_particles"})
+                          "mass_discharged_kg", "mass_retained_kg", "stages", "lost_particles", "energy"})
     EXPECT_EQ(one[key], other[key]) << key;
+  EXPECT_TRUE(one["energy"]["closes"]) << one["energy"];
 }
 
 inline RunState run_state_of(const std::filesystem::path& checkpoint) {

@@ -155,12 +155,18 @@ void change_the_format(const fs::path& path) {
   file.put(77);
 }
 
+void put_another_cases(const fs::path& path) {
+  FinishedRun other(kStageEndsOnly, {"seed=12"});
+  fs::copy_file(checkpoints_in(other.out()).front(), path, fs::copy_options::overwrite_existing);
+}
+
 const Fault kFaults[] = {
     {"truncated", [](const fs::path& p) { fs::resize_file(p, fs::file_size(p) * 2 / 3); }, "truncated"},
     {"empty", [](const fs::path& p) { fs::resize_file(p, 0); }, "not a checkpoint"},
     {"bits flipped", flip_the_middle, "damaged"},
     {"not HDF5", [](const fs::path& p) { std::ofstream(p) << std::string(9000, '#'); }, "not a checkpoint"},
     {"other version", change_the_format, "another version"},
+    {"of another case", put_another_cases, "it belongs to another case: key 'seed' was 12 and is now 1"},
     {"a folder of that name", [](const fs::path& p) { fs::remove(p), fs::create_directory(p); }, "cannot be read"},
 };
 
@@ -275,6 +281,18 @@ TEST(Resume, OfARunThatDiedBeforeItsFirstCheckpointBeginsAtTheStart) {
   expect_same_results(out, run.out());
 }
 
+// What a run that a check stopped leaves to be looked at.
+void expect_failure_files(const fs::path& out) {
+  int failed = 0;
+  for (const auto& entry : fs::directory_iterator(out / "checkpoints"))
+    failed += entry.path().filename().string().starts_with("failed_step_");
+  EXPECT_EQ(failed, 1);
+  const std::string picture = text_of(out / "failure.vtp");
+  EXPECT_NE(picture.find("<VTKFile"), std::string::npos);
+  EXPECT_EQ(picture.find("NumberOfPoints=\"0\""), std::string::npos) << "nothing lies round the place";
+  EXPECT_EQ(read_summary(out)["status"], "failed");
+}
+
 // A failing run leaves its state to be looked at, and goes on from the last good one: to the same failure.
 TEST(Resume, OfAFailedRunStartsFromTheLastGoodState) {
   const TemporaryFolder folder;
@@ -285,13 +303,59 @@ TEST(Resume, OfAFailedRunStartsFromTheLastGoodState) {
   const RunResult r = run_case(c, options);
   ASSERT_EQ(r.status, RunStatus::failed);
   EXPECT_NE(r.message.find("left the domain"), std::string::npos) << r.message;
-  int failed = 0;
-  for (const auto& entry : fs::directory_iterator(options.out / "checkpoints"))
-    failed += entry.path().filename().string().starts_with("failed_step_");
-  EXPECT_EQ(failed, 1);
+  expect_failure_files(options.out);
   const Told again = resume_telling(options.out, c);
   EXPECT_EQ(again.result.message, r.message);
   EXPECT_NE(again.text.find("resumed from step_"), std::string::npos) << again.text;
+}
+
+// ---- what a stage reads fails the run
+
+struct BadBeads {
+  const char* what;
+  const char* rows;
+  const char* message;
+};
+
+TEST(Failure, ByOverlapOrSpeedNamesTheParticleAndLeavesFiles) {
+  for (const BadBeads& bad :
+       {BadBeads{"overlap", "0, 0, 0.032, 0.00075, 0, 0, 0\n0, 0, 0.0334, 0.00075, 0, 0, 0\n", "overlaps particle"},
+        BadBeads{"speed", "0, 0, 0.03, 0.00075, 500, 0, 0\n", "moves at 500 m/s"}}) {
+    SCOPED_TRACE(bad.what);
+    const TemporaryFolder folder;
+    const Case c = read_case(write_every_stage(folder.path()), {"watch.max_overlap=0.05"});
+    std::ofstream(folder.path() / "beads.csv") << "x, y, z, radius, vx, vy, vz\n" << bad.rows;
+    RunOptions options;
+    options.out = folder.path() / "out";
+    const RunResult r = run_case(c, options);
+    EXPECT_EQ(r.status, RunStatus::failed);
+    EXPECT_FALSE(r.bad_input);
+    for (const char* part : {bad.message, "particle 30", " at t = ", "use a smaller [time] step"})
+      EXPECT_NE(r.message.find(part), std::string::npos) << r.message;
+    expect_failure_files(options.out);
+    EXPECT_FALSE(r.checkpoint.empty());
+  }
+}
+
+// The file is mended, and the run goes on to the bits of one that always had the good one.
+TEST(Failure, ByABadFileOfAReadStageLeavesACheckpointAndASummary) {
+  FinishedRun good(kStageEndsOnly);
+  const TemporaryFolder folder;
+  const Case c = read_case(write_every_stage(folder.path()));
+  const std::string beads = text_of(folder.path() / "beads.csv");
+  std::ofstream(folder.path() / "beads.csv") << "x, y, z, radius\n0, 0, 0.03, nan\n";
+  RunOptions options;
+  options.out = folder.path() / "out";
+  const RunResult r = run_case(c, options);
+  EXPECT_EQ(r.status, RunStatus::failed);
+  EXPECT_TRUE(r.bad_input);
+  EXPECT_NE(r.message.find("beads.csv:2:"), std::string::npos) << r.message;
+  EXPECT_EQ(read_summary(options.out)["status"], "failed");
+  ASSERT_FALSE(r.checkpoint.empty());
+  EXPECT_TRUE(run_state_of(r.checkpoint).begun);
+  std::ofstream(folder.path() / "beads.csv") << beads;
+  EXPECT_EQ(resume_in(options.out, c).status, RunStatus::done);
+  expect_same_results(options.out, good.out());
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ class EnergyLedgerOf : public LawTest {
   double closing() const { return GetParam() == Precision::reference ? 1e-9 : kLedgerTolerance; }
 };
 
+constexpr double kAWaysShare = 1e-2;  // of gravity's work, that a way of one step may be
+
 void expect_closed(const EnergyBalance& b, double tolerance) {
   EXPECT_GT(b.turned_over, 0);
   EXPECT_LT(b.energy_residual_share(), tolerance);
@@ -27,10 +29,11 @@ void expect_closed(const EnergyBalance& b, double tolerance) {
 
 TEST_P(EnergyLedgerOf, a_bed_that_falls_and_settles_closes) {
   const LooseBed bed{8, 8, 6};
-  const auto engine = make_engine(with_ledger(bed_case(bed)));
+  const Case c = with_ledger(bed_case(bed));
+  const auto engine = make_engine(c);
   engine->insert(bed.particles({0, 0, 0}, 1));
   run_steps(*engine, 4000);
-  const EnergyBalance b = balance_of(*engine);
+  const EnergyBalance b = balance_of(*engine, c);
   expect_closed(b, closing());
   EXPECT_GT(b.damping, 0);
   EXPECT_GT(b.friction, 0);
@@ -38,6 +41,7 @@ TEST_P(EnergyLedgerOf, a_bed_that_falls_and_settles_closes) {
   // What was turned over is dissipated: nearly nothing is left in motion.
   EXPECT_LT(b.kinetic + b.elastic, 0.2 * b.turned_over);
   EXPECT_LT(std::abs(b.time_stepping), 0.1 * b.turned_over);
+  EXPECT_NEAR(*b.potential, -b.gravity, kAWaysShare * b.turned_over);
 }
 
 TEST_P(EnergyLedgerOf, a_head_on_impact_loses_what_restitution_says_to_the_dashpot) {
@@ -49,7 +53,7 @@ TEST_P(EnergyLedgerOf, a_head_on_impact_loses_what_restitution_says_to_the_dashp
       std::vector{grain({-2.5e-4, 0, 0}, kRadius, {speed, 0, 0}), grain({2.5e-4, 0, 0}, kRadius, {-speed, 0, 0})});
   run_steps(*engine, 3000);
   ASSERT_TRUE(engine->contacts().empty());
-  const EnergyBalance b = balance_of(*engine);
+  const EnergyBalance b = balance_of(*engine, c);
   const double e = c.pairs[0].restitution;
   EXPECT_NEAR(b.damping, (1 - e * e) * b.inserted_kinetic, 0.01 * b.inserted_kinetic);
   EXPECT_NEAR(b.friction, 0, 1e-6 * b.inserted_kinetic);
@@ -66,7 +70,7 @@ TEST_P(EnergyLedgerOf, a_moving_wall_pays_for_the_motion_that_it_gives) {
   const auto engine = make_engine(c);
   engine->insert(std::vector{grain({0, 0, 0.99 * kRadius})});
   run_steps(*engine, 2000);
-  const EnergyBalance b = balance_of(*engine);
+  const EnergyBalance b = balance_of(*engine, c);
   EXPECT_GT(b.walls, 0);
   expect_closed(b, closing());
   // All motion along x comes from the belt: impulse times its speed.
@@ -81,9 +85,10 @@ TEST_P(EnergyLedgerOf, particles_that_leave_take_their_energy_with_them) {
   engine->insert(std::vector{grain({0, 0, 0}), grain({0.002, 0, 0.001}, kRadius, {0, 0, 0.2})});
   while (engine->count() > 0 && engine->counters().steps < 40000) engine->step();
   ASSERT_EQ(engine->count(), 0u);
-  const EnergyBalance b = balance_of(*engine);
+  const EnergyBalance b = balance_of(*engine, c);
   EXPECT_EQ(b.kinetic, 0);
   EXPECT_NEAR(b.removed_kinetic, b.inserted_kinetic + b.gravity, closing() * b.turned_over);
+  EXPECT_NEAR(*b.potential, -b.gravity, kAWaysShare * b.turned_over);
   expect_closed(b, closing());
 }
 
@@ -97,6 +102,31 @@ TEST_P(EnergyLedgerOf, keeping_it_does_not_change_the_run) {
     run_steps(*engine, 1500);
   }
   EXPECT_EQ(without->state_hash(), with->state_hash());
+}
+
+TEST(EnergyLedger, has_no_potential_where_gravity_pulls_round_a_periodic_axis) {
+  Case c = ceramic_case({{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}}, {'x'});
+  c.output.energy_ledger = true;
+  c.gravity = {1, 0, -9.81};
+  const auto engine = make_engine(c);
+  engine->insert(std::vector{grain({0, 0, 0})});
+  run_steps(*engine, 10);
+  EXPECT_FALSE(balance_of(*engine, c).potential);
+  EXPECT_TRUE(to_json(balance_of(*engine, c))["potential_J"].is_null());
+  c.gravity.x = 0;
+  EXPECT_TRUE(to_json(balance_of(*engine, c))["potential_J"].is_number());
+}
+
+TEST(EnergyLedger, that_does_not_close_is_complained_of) {
+  EnergyBalance b;
+  b.turned_over = b.impulse_turned_over = 1, b.energy_residual = 0.9 * kLedgerTolerance;
+  EXPECT_EQ(complaint(b), "");
+  b.energy_residual = -0.02;
+  EXPECT_NE(complaint(b).find("does not close: 0.02 of the energy and 0 of the momentum"), std::string::npos);
+  b.energy_residual = 0, b.momentum_residual = {0, 0, 0.5};
+  EXPECT_NE(complaint(b).find("0.5 of the momentum"), std::string::npos);
+  b.momentum_residual = {0, 0, std::nan("")};
+  EXPECT_NE(complaint(b), "");
 }
 
 TEST(EnergyLedger, is_the_same_for_any_threads_and_lanes) {

@@ -39,7 +39,8 @@ TEST(CaseDifference, NamesTheFirstOfSeveral) {
 }
 
 TEST(CaseDifference, IsNoneForWhatDoesNotChangeTheCourse) {
-  EXPECT_EQ(difference_by({"title=another", "checkpoint.interval=3", "checkpoint.keep=9", "output.final_vtk=false"}),
+  EXPECT_EQ(difference_by({"title=another", "checkpoint.interval=3", "checkpoint.keep=9", "watch.max_overlap=0.2",
+                           "output.final_vtk=false"}),
             "");
   EXPECT_EQ(difference_by({"output.fields.interval=0.01", "output.fields.write=[\"age\"]", "output.residence.bin=0.1"}),
             "");

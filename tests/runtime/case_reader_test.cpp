@@ -141,10 +141,11 @@ TEST(CaseReader, BasesThatLeadBackAreRefused) {
 
 TEST(CaseReader, OverridesReachEveryTable) {
   Folder folder;
-  const Case c = read_case(
-      folder.write("good.toml", kGoodCase),
-      {"contact.rolling=cdt", "title=\"over\"", "lattice.fibre_diameter=1.36e-3", "material.steel.youngs_modulus=2e7",
-       "pair.steel+bead.restitution=0.6", "stage.fill.count=123", "neighbour.skin=1e-4", "gravity=[0, 0, -1.62]"});
+  const Case c =
+      read_case(folder.write("good.toml", kGoodCase),
+                {"contact.rolling=cdt", "title=\"over\"", "lattice.fibre_diameter=1.36e-3",
+                 "material.steel.youngs_modulus=2e7", "pair.steel+bead.restitution=0.6", "stage.fill.count=123",
+                 "neighbour.skin=1e-4", "watch.max_overlap=0.1", "gravity=[0, 0, -1.62]"});
   EXPECT_EQ(c.contact.rolling, RollingModel::cdt);
   EXPECT_EQ(c.title, "over");
   EXPECT_EQ(c.fibres.diameter, 1.36e-3);
@@ -152,6 +153,7 @@ TEST(CaseReader, OverridesReachEveryTable) {
   EXPECT_EQ(c.pairs[1].restitution, 0.6);
   EXPECT_EQ(std::get<FillStage>(c.stages[0].action).count, 123u);
   EXPECT_EQ(c.neighbour.skin, 1e-4);
+  EXPECT_EQ(c.watch.max_overlap, 0.1);
   EXPECT_EQ(c.gravity.z, -1.62);
 }
 

@@ -50,7 +50,7 @@ struct Text {
 void describe_settings(const Case& c, Text& t) {
   t.row("case", c.title, c.seed, c.gravity, c.domain, c.periodic[0], c.periodic[1], c.periodic[2]);
   t.row("contact", c.contact.model, c.contact.rolling, c.contact.limit_attraction, c.contact.precision);
-  t.row("time", c.time.step, c.time.rayleigh_fraction, c.time.allow_large_step, c.neighbour.skin);
+  t.row("time", c.time.step, c.time.rayleigh_fraction, c.time.allow_large_step, c.neighbour.skin, c.watch.max_overlap);
   t.row("checkpoint", c.checkpoint.interval, c.checkpoint.keep);
   t.row("output", c.output.interval, c.output.steady_from, c.output.steady_to, c.output.final_vtk,
         c.output.energy_ledger);

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "kernels/parallel.h"
 #include "tests/scenes.h"
 
 namespace scree {
@@ -122,6 +123,28 @@ TEST(ContactSums, CoordinationCountsTouchingPairs) {
     all += sums.coordination[k];
   }
   EXPECT_GT(all, 30);
+}
+
+TEST(ContactSums, AreTheSameForAnyNumberOfThreads) {
+  Case c = glass_case(Precision::mixed);
+  std::vector<ParticleState> grains;
+  for (int k = 0; k < 3375; ++k)  // pressed together by some per cent
+    grains.push_back(sphere(c, 0, {0.00199 * (k % 15), 0.00197 * (k / 15 % 15), 0.00198 * (k / 225)}));
+  const auto engine = make_engine(c);
+  engine->insert(grains);
+  engine->step();
+  const std::vector<ParticleState> now = engine->particles();
+  const int before = thread_count();
+  const auto sums = [&](int threads) {
+    set_thread_count(threads);
+    return contact_sums(now, *engine);
+  };
+  const ContactSums one = sums(1), three = sums(3);
+  set_thread_count(before);
+  EXPECT_GT(*std::ranges::max_element(one.coordination), 5);
+  EXPECT_EQ(one.coordination, three.coordination);
+  EXPECT_EQ(one.stress, three.stress);
+  for (size_t k = 0; k < now.size(); ++k) EXPECT_EQ(norm(one.force[k] - three.force[k]), 0) << k;
 }
 
 }  // namespace

@@ -151,6 +151,15 @@ TEST(Checksum, DoesNotDependOnHowTheBytesAreCut) {
   }
 }
 
+TEST(Checksum, OfNothingChangesNothing) {
+  Checksum a, b;
+  a.add("abc", 3), b.add("abc", 3);
+  b.add(nullptr, 0);
+  EXPECT_EQ(a.value(), b.value());
+  a.add("def", 3), b.add("def", 3);
+  EXPECT_EQ(a.value(), b.value());
+}
+
 TEST(Checksum, TellsZerosApartByTheirNumber) {
   const std::vector<char> zeros(64);
   Checksum a, b;

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "kernels/array.h"
 #include "runtime/list_check.h"
 #include "runtime/results.h"
+#include "runtime/state_archive.h"
+#include "tests/array_memory.h"
 #include "tests/oracle/beds.h"
 #include "tests/runtime/case_text.h"
 
@@ -46,6 +49,30 @@ void expect_near(const RunError& error, const Vec3& x, double reach) {
   EXPECT_LT(norm(*error.where - x), reach) << error.what();
 }
 
+// What `engine` saves, in a fresh engine of the same case; `edit` changes it on the way.
+std::unique_ptr<Engine> saved_and_loaded(const Engine& engine, const Case& c, const EngineOptions& options = {},
+                                         const std::function<void(StoredArrays&)>& edit = {}) {
+  const testing::Folder folder;
+  const std::string path = folder.path("state.h5");
+  {
+    Hdf5Writer file(path);
+    StateWriter out(file);
+    engine.save(out);
+    file.close();
+  }
+  RecordingSource source(path);
+  StateReader recorded(source);
+  auto loaded = make_engine(c, options);
+  loaded->load(recorded);
+  if (!edit) return loaded;
+  edit(source.arrays);
+  MemorySource memory(source.arrays);
+  StateReader edited(memory);
+  loaded = make_engine(c, options);
+  loaded->load(edited);
+  return loaded;
+}
+
 TEST(Watch, a_particle_going_through_a_wall) {
   const auto engine = make_engine(case_with_floor());
   const Vec3 at{0.001, 0.002, 0.3 * kRadius};
@@ -73,12 +100,56 @@ TEST(Watch, two_particles_that_overlap_too_much) {
   expect_near(error, {0.002, 0, 0}, kRadius);
 }
 
+TEST(Watch, two_particles_that_overlap_more_than_the_case_allows) {
+  Case c = ceramic_case(kBox);
+  const std::vector<ParticleState> pair{grain({0, 0, 0}), grain({1.8 * kRadius, 0, 0})};
+  const auto usual = make_engine(c);
+  usual->insert(pair);
+  EXPECT_NO_THROW(run_steps(*usual, 1));
+  c.watch.max_overlap = 0.05;
+  const auto strict = make_engine(c);
+  strict->insert(pair);
+  expect_parts(stopped(*strict, 1), {"overlaps particle", "by 0.1 of the sum of the radii", "(limit 0.05)"});
+}
+
 TEST(Watch, a_particle_that_is_too_fast) {
   const auto engine = make_engine(ceramic_case(kBox));
   const Vec3 at{0.001, 0, 0};
   engine->insert(std::vector{grain({0, 0, 0}), grain(at, kRadius, {0, 30, 0})});
   const RunError error = stopped(*engine, 1);
   expect_parts(error, {"particle 1 ", "moves at 30 m/s", "radii in a step"});
+  expect_near(error, at, 1e-9);
+}
+
+// Of a speed that only single precision finds beyond the limit the particle is named, too.
+TEST(Watch, a_particle_that_is_too_fast_by_rounding) {
+  const Case c = ceramic_case(kBox);
+  const double limit = kMaxTravelShare * grain({}).radius / kStep;
+  std::optional<Vec3> velocity;
+  for (int k = 0; k < 100000 && !velocity; ++k) {
+    const auto x = static_cast<float>(limit * std::cos(1e-5 * k)), y = static_cast<float>(limit * std::sin(1e-5 * k));
+    const Vec<float> v{x, y, 0};
+    if (norm({x, y, 0}) <= limit && dot(v, v) > static_cast<float>(limit * limit)) velocity = {x, y, 0};
+  }
+  ASSERT_TRUE(velocity);
+  const auto engine = make_engine(c);
+  engine->insert(std::vector{grain({0, 0, 0}), grain({0.001, 0, 0}, kRadius, *velocity)});
+  expect_parts(stopped(*engine, 1), {"particle 1 at (0.0010", "radii in a step"});
+}
+
+TEST(Watch, a_position_that_is_not_a_number) {
+  const auto engine = make_engine(ceramic_case(kBox));
+  engine->insert(std::vector{grain({0, 0, 0}), grain({0, std::nan(""), 0})});
+  expect_parts(stopped(*engine, 1), {"particle 1 left the domain at (0, nan, 0) m, t = 0 s"});
+}
+
+TEST(Watch, a_velocity_that_is_not_a_number) {
+  const auto engine = make_engine(ceramic_case(kBox));
+  const Vec3 at{0.001, 0, 0};
+  engine->insert(std::vector{grain({0, 0, 0}), grain(at, kRadius, {0, std::nan(""), 0})});
+  const RunError error = stopped(*engine, 1);
+  expect_parts(error, {"the velocity of particle 1, which was at (0.001, 0, 0) m, is not a number at t = 5e-06 s",
+                       "use a smaller [time] step (now 5e-06 s)"});
   expect_near(error, at, 1e-9);
 }
 
@@ -163,6 +234,28 @@ TEST(Watch, a_pair_across_a_periodic_border_counts) {
   EXPECT_EQ(missing->j, 1u);
 }
 
+// The engine's own look, on lists that were made when the second particle was elsewhere.
+TEST(Watch, a_contact_that_the_engines_lists_do_not_hold) {
+  const Case c = ceramic_case(kBox);
+  EngineOptions options;
+  options.list_check_interval = 1;
+  const auto sound = make_engine(c, options);
+  const Vec3 at{0.001, 0, 0};
+  sound->insert(std::vector{grain(at), grain({0.008, 0, 0})});
+  run_steps(*sound, 3);
+  const auto moved = saved_and_loaded(*sound, c, options, [&](StoredArrays& arrays) {
+    std::vector<char>& bytes = arrays.at("engine/particles").bytes;
+    std::vector<Particle<float>> records(2);
+    std::memcpy(static_cast<void*>(records.data()), bytes.data(), bytes.size());
+    for (Particle<float>& p : records)
+      if (p.id() == 1) p.x = at.x + 1.9 * kRadius;
+    std::memcpy(bytes.data(), records.data(), bytes.size());
+  });
+  const RunError error = stopped(*moved, 1);
+  expect_parts(error, {"touches particle", "at t = 2e-05 s", "the contact lists do not hold it", "please report"});
+  expect_near(error, at, 2 * kRadius);
+}
+
 // ---- energy and time step
 
 EnergyLook look(double time, double kinetic) { return {time, kinetic, 1e-4, 0.1, 1e-3, 1000, 1000}; }
@@ -182,6 +275,26 @@ TEST(Watch, energy_held_by_contacts_is_in_the_budget) {
   const double overlap = std::pow(energy / (8.0 / 15 * modulus * std::sqrt(kRadius)), 0.4);
   const EnergyLook before{0, 0, mass, 0, overlap / kRadius, 1, 1}, after{1e-3, energy, mass, speed, 0, 1, 1};
   EXPECT_GT(EnergyBudget(c).most_after(before, after), energy);
+}
+
+// All energy is in the contact there, none in motion: who resumes must know of the overlap before a step is taken.
+TEST(Watch, a_run_resumed_at_the_turning_point_of_a_bounce_goes_on) {
+  Case c = case_with_floor();
+  c.gravity = {0, 0, 0}, c.time.step = 1e-6;
+  auto engine = make_engine(c);
+  engine->insert(std::vector{grain({0, 0, 1.1 * kRadius}, kRadius, {0, 0, -0.5})});
+  double least = 1;
+  for (double speed = 0.5; speed <= least; speed = engine->max_speed()) least = speed, engine->step();
+  ASSERT_LT(least, 0.03);
+  ASSERT_GT(engine->max_overlap(), 0.03);
+  const double overlap = engine->max_overlap();
+  engine = saved_and_loaded(*engine, c);
+  EXPECT_EQ(engine->max_overlap(), overlap);
+  Watch watch(c);
+  EXPECT_TRUE(watch.look(*engine).empty());
+  run_steps(*engine, 500);
+  EXPECT_GT(engine->max_speed(), 0.15);
+  EXPECT_NO_THROW(watch.look(*engine));
 }
 
 std::unique_ptr<Engine> two_grains(Case c, double time_step, double speed, int steps) {
@@ -218,6 +331,52 @@ TEST(Watch, a_step_too_large_for_the_speed_warns_once_and_then_stops) {
   } catch (const RunError& error) {
     expect_parts(error, {"0.60 of the Hertz contact time", "of particle 1 at", "at most 0.5 is allowed"});
     expect_near(error, {0.002, 0, 0}, 1e-3);
+  }
+}
+
+TEST(Watch, a_lost_particle_stops_the_run_at_the_next_look) {
+  const Case c = ceramic_case(kBox);
+  const auto whole = two_grains(c, kStep, 0, 1);
+  EXPECT_TRUE(Watch(c).look(*whole).empty());
+  const auto lost = saved_and_loaded(*whole, c, {}, [](StoredArrays& arrays) {
+    const uint64_t inserted = 3;
+    std::memcpy(arrays.at("engine/counters/inserted").bytes.data(), &inserted, sizeof inserted);
+  });
+  try {
+    Watch(c).look(*lost);
+    FAIL() << "of three particles two are left, and none went out";
+  } catch (const RunError& error) {
+    expect_parts(error, {"3 particles went in, 0 left through outlets, 2 are left at t = 5e-06 s: 1 lost"});
+  }
+}
+
+TEST(Watch, a_spin_too_large_for_the_step_warns_once_and_one_that_is_no_number_stops) {
+  const Case c = ceramic_case(kBox);
+  const auto spinning = [&](double spin) {
+    auto engine = make_engine(c);
+    ParticleState p = grain({0.002, 0, 0});
+    p.spin = {0, spin, 0};
+    engine->insert(std::vector{grain({0.001, 0, 0}), p});
+    run_steps(*engine, 1);
+    return engine;
+  };
+  const double limit = kMaxTravelShare / kStep;  // rad/s
+  EXPECT_TRUE(Watch(c).look(*spinning(0.99 * limit)).empty());
+  Watch watch(c);
+  const auto engine = spinning(1.5 * limit);
+  const std::vector<std::string> warnings = watch.look(*engine);
+  ASSERT_EQ(warnings.size(), 1u);
+  for (const char* part :
+       {"the surface of particle 1 at (0.002, 0, 0) m spins at 12 m/s", "t = 5e-06 s", "[time] step"})
+    EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
+  run_steps(*engine, 500);
+  EXPECT_TRUE(watch.look(*engine).empty());
+  try {
+    Watch(c).look(*spinning(std::nan("")));
+    FAIL() << "a spin is not a number";
+  } catch (const RunError& error) {
+    expect_parts(error, {"the spin of particle 1 at (0.002, 0, 0) m is not a number", "t = 5e-06 s"});
+    expect_near(error, {0.002, 0, 0}, 1e-9);
   }
 }
 
