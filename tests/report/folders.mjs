@@ -1,6 +1,6 @@
 // Results folders to make reports of: written by hand, with a curve that is known, and by the program.
 import { execFileSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -20,9 +20,9 @@ export const kOpen = 0.1, kEnd = 0.5, kRate = 8e-3;
 export const discharged = (t) => Math.max(0, t - kOpen) * kRate;
 const kRows = 501;
 
-const massFlow = () => {
+const massFlow = (rate = kRate) => {
   const rows = Array.from({ length: kRows }, (_, k) => (k * kEnd) / (kRows - 1));
-  return ["time_s,discharged_kg,mass_flow_kg_per_s", ...rows.map((t) => `${t},${discharged(t)},${t > kOpen ? kRate : 0}`)].join("\n") + "\n";
+  return ["time_s,discharged_kg,mass_flow_kg_per_s", ...rows.map((t) => `${t},${(discharged(t) / kRate) * rate},${t > kOpen ? rate : 0}`)].join("\n") + "\n";
 };
 
 const kSummary = {
@@ -67,8 +67,25 @@ export const addPicturesAndFields = (folder) => {
 export const runSmallSweep = (folder) => {
   const file = join(folder, "small.toml");
   writeFileSync(file, `title = "Small silo"\ncase = ${JSON.stringify(join(kTop, "cases/examples/orifice_silo.toml"))}\nseeds = [1, 2]\n` +
-    `[set]\nstage.fill.mass = 0.3e-3\nstage.settle.time = 0.01\nstage.drain.max_time = 0.03\ntime.rayleigh_fraction = 0.3\noutput.interval = 5e-4\n` +
+    `[set]\nstage.fill.mass = 0.3e-3\nstage.settle.time = 0.01\nstage.drain.max_time = 0.03\nstage.drain.discharged_fraction = 1\ntime.rayleigh_fraction = 0.3\noutput.interval = 5e-4\n` +
     `[[parameter]]\nkey = "contact.rolling"\nvalues = ["cdt", "epsd2"]\nlabel = "rolling"\n`);
   scree("sweep", file, "--out", join(folder, "swept"));
   return join(folder, "swept");
+};
+
+// The small sweep with known curves in its folders, g/s from 0.1 s on; with a reference of 6.5 g/s and captions.
+export const kSweptRates = { rolling_cdt__seed_1: 8, rolling_cdt__seed_2: 6, rolling_epsd2__seed_1: 5, rolling_epsd2__seed_2: 5 };
+export const makeKnownSweep = (folder, otherRates = {}) => {
+  const out = mkdtempSync(join(folder, "known_")), file = join(folder, "known.toml");
+  cpSync(join(folder, "swept"), out, { recursive: true });
+  for (const [name, rate] of Object.entries({ ...kSweptRates, ...otherRates })) {
+    const run = join(out, name), summary = JSON.parse(readFileSync(join(run, "summary.json"), "utf8"));
+    writeFileSync(join(run, "mass_flow.csv"), massFlow(1e-3 * rate));
+    writeFileSync(join(run, "summary.json"), JSON.stringify({ ...summary, stages: kSummary.stages, mass_discharged_kg: 1e-3 * rate * (kEnd - kOpen), mass_retained_kg: 1e-4,
+      steady_mass_flow_kg_per_s: 1e-3 * rate, steady_mass_flow_standard_error_kg_per_s: 2e-4, steady_window_s: [0.2, 0.4] }));
+  }
+  writeFileSync(file, `${readFileSync(join(folder, "small.toml"), "utf8")}[reference]\nlabel = "measured"\nvalue = 6.5e-3\nunit = "kg/s"\n` +
+    `[captions]\nflow_curves = "as somebody's curves"\nsteady_flow = "as somebody's mass flow against rolling"\n`);
+  scree("sweep", file, "--out", out, "--report");
+  return out;
 };
