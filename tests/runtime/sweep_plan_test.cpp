@@ -1,6 +1,7 @@
 // Sweep files: how their tables expand into runs, and what is refused, with the place and what is allowed.
 #include <gtest/gtest.h>
 
+#include "runtime/case_physics.h"
 #include "runtime/case_reader.h"
 #include "runtime/sweep_plan.h"
 #include "tests/runtime/case_text.h"
@@ -167,9 +168,18 @@ TEST(SweepPlan, wrong_files_are_refused_with_the_place_and_what_is_allowed) {
 
 TEST(SweepPlan, every_shipped_sweep_is_in_order) {
   const std::filesystem::path cases = std::filesystem::path(SCREE_SOURCE_DIR) / "cases" / "olhx";
-  const std::pair<const char*, size_t> shipped[] = {{"porosity", 6}, {"friction", 6}, {"rolling", 4}};
+  const std::pair<const char*, size_t> shipped[] = {{"porosity", 6}, {"friction", 6}, {"rolling", 4}, {"diameter", 6}};
   for (const auto& [name, runs] : shipped)
     EXPECT_EQ(read_sweep((cases / fmt::format("sweep_{}.toml", name)).string()).runs.size(), runs) << name;
+}
+
+TEST(SweepPlan, the_shipped_diameters_keep_the_time_step_s_share_of_the_rayleigh_time) {
+  const SweepPlan plan =
+      read_sweep((std::filesystem::path(SCREE_SOURCE_DIR) / "cases/olhx/sweep_diameter.toml").string());
+  const auto share = [](const Case& c) { return time_step_of(c) / smallest_rayleigh_time(c); };
+  const double of_the_demo = share(read_case(plan.case_file, {}));
+  for (const SweepRun& run : plan.runs)
+    EXPECT_NEAR(share(read_case(plan.case_file, run.set)), of_the_demo, 1e-9) << run.name;
 }
 
 TEST(SweepPlan, the_case_must_be_there) {
