@@ -27,6 +27,7 @@ const units = {
   mass: [[1, "kg"], [1e-3, "g"], [1e-6, "mg"]],
   flow: [[1, "kg/s"], [1e-3, "g/s"], [1e-6, "mg/s"]],
   time: [[1, "s"], [1e-3, "ms"], [1e-6, "µs"], [1e-9, "ns"]],
+  energy: [[1, "J"], [1e-3, "mJ"], [1e-6, "µJ"], [1e-9, "nJ"]],
   bytes: [[1e9, "GB"], [1e6, "MB"], [1e3, "kB"], [1, "bytes"]],
   pressure: [[1e9, "GPa"], [1e6, "MPa"], [1e3, "kPa"], [1, "Pa"]],
 };

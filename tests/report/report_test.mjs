@@ -191,6 +191,27 @@ test("lost particles are told as a check that does not hold", async () => {
   await close();
 });
 
+test("the energy ledger is told as a check that holds or does not", async () => {
+  const ledger = { kinetic_J: 1e-6, gravity_work_J: 2e-3, dissipated_by_friction_J: 1.5e-3, energy_residual_share: 1.5e-4, momentum_residual_share: 2.4e-6, tolerance: 1e-3, closes: true };
+  const closing = writeRun(join(place.folder, "closing"), { changes: { energy: ledger } });
+  const open_ended = writeRun(join(place.folder, "open_ended"), { changes: { energy: { ...ledger, energy_residual_share: 0.02, closes: false } } });
+  for (const [folder, state, text] of [
+    [closing, "holds", "Holds. Energy: 0.015 % of the energy turned over is in no term of the ledger, 0.00024 % of the momentum; rounding explains up to 0.10 %."],
+    [open_ended, "fails", "Does not hold. Energy: 2.0 % of the energy turned over is in no term of the ledger, 0.00024 % of the momentum; rounding explains up to 0.10 %."]]) {
+    scree("report", folder);
+    const { page, troubles, close } = await open(browser, reportOf(folder));
+    assert.equal(await page.locator(`#checks .${state}`, { hasText: "Energy" }).textContent(), text);
+    assert.deepEqual(await page.locator("#checks tbody td:first-child").allTextContents(), ["Gravity work", "Dissipated by friction", "Kinetic"]);
+    assert.deepEqual(troubles, []);
+    await close();
+  }
+  const both = join(place.folder, "ledgers.html");
+  scree("report", full, closing, open_ended, "--out", both);
+  const { page, close } = await open(browser, both);
+  assert.deepEqual(await page.locator("#checks tbody td:last-child").allTextContents(), ["no ledger", "holds", "does not hold"]);
+  await close();
+});
+
 test("several runs lie over one another from the moment the drain began, and what differs is listed", async () => {
   const other = writeRun(join(place.folder, "other"), { friction: 0.7, changes: { steady_mass_flow_kg_per_s: 6e-3 } });
   const page_file = join(place.folder, "two.html");
