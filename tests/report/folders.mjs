@@ -35,8 +35,14 @@ const kSummary = {
 
 // What the observers of fields add to it.
 const kFieldNumbers = {
-  touch: { looks: 10, window_s: [0.2, 0.4], fibres: { touched_share: 0.62, dead_share: 0.25, upper_half: { touched_share: 0.9, dead_share: 0.02 } }, walls: { channel: { touched_share: 0.5, dead_share: 0.1 } } },
-  average_flow: { looks: 10, mass_kg: 1e-3 },
+  touch: { looks: 10, window_s: [0.2, 0.4], fibres: { touched_share: 0.62, dead_share: 0.25, out_of_reach_share: 0.05, exposed_area_m2: 2e-4, contacts_per_m2: 1.5e6, mean_normal_force_N: 2.5e-5, upper_half: { touched_share: 0.9, dead_share: 0.02 } }, walls: { channel: { touched_share: 0.5, dead_share: 0.1 } } },
+  average_flow: {
+    looks: 10, mass_kg: 1e-3, solid_fraction_of_free_space: 0.4, mean_velocity_m_per_s: [0, 0, -0.03], granular_temperature_m2_per_s2: 1e-3,
+    junctions: { above: { lines: 6, solid_fraction: 0.2, solid_fraction_of_free_space: 0.5, downward_velocity_m_per_s: 3e-4, speed_over_section_mean: 0.01 }, below: { lines: 6, solid_fraction: 0, downward_velocity_m_per_s: null } },
+    lanes: { peak_over_mean: { mean: 2, least: 1.5, most: 2.5 }, distance_from_axis_m: { mean: 2.5e-3, least: 2e-3, most: 3e-3 },
+      layers: { z_m: [0, 1e-3, 2e-3], peak_over_mean: [1.5, 2, 2.5], distance_from_axis_m: [2e-3, 3e-3, 2.5e-3] } },
+    something_new_kg: 0.25, more_of_it: { low_m: 1, high_m: 2 },
+  },
   residence: { entered_kg: 1e-3, went_through_kg: 5e-4, mean_s: 0.15, p10_s: 0.1, median_s: 0.14, p90_s: 0.2, retained_kg: 4e-6, retained_grains: 40, retained_at_no_junction_kg: 0 },
 };
 
@@ -52,7 +58,7 @@ export const writeRun = (folder, { title = "A known curve", friction = 0.5, chan
 
 // Everything that other parts of the program may leave beside it.
 export const addPicturesAndFields = (folder) => {
-  for (const name of ["pictures/front_speed_0.350000.png", "averages/solid_fraction_x.png", "touch/channel.png"]) {
+  for (const name of ["pictures/front_speed_0.350000.png", "averages/solid_fraction_x.png", "touch/channel.png", "residence/times.png"]) {
     mkdirSync(dirname(join(folder, name)), { recursive: true });
     writeFileSync(join(folder, name), kPng);
   }

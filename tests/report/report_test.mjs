@@ -138,11 +138,24 @@ test("pictures are in the page itself, with captions, and open large", async () 
 
 test("touch maps, residence and retention are told as numbers", async () => {
   const { page, close } = await open(browser, reportOf(full));
-  assert.deepEqual(await page.locator("#touch tbody tr").allTextContents(), ["Fibres62 %25 %", "Fibres, upper half90 %2 %", "Channel50 %10 %"]);
+  assert.deepEqual(await page.locator("#touch tbody tr").allTextContents(), ["Fibres62 %25 %5 %3001.5025.0", "Fibres, upper half90 %2 %––––", "Channel50 %10 %––––"]);
   assert.match(await page.locator("#residence").textContent(), /500 mg of 1\.00 g that entered/);
   const [time, share] = await readOut(page, "residence", 0, 0.5);
   assert.ok(Math.abs(number(time) - 0.2) < 0.11 && [2, 6].some((s) => Math.abs(number(share) - s) < 1e-6), `${share} at ${time}`);
   assert.deepEqual(await page.locator("#residence .table-box tbody tr").allTextContents(), ["5, 0, 103.0030", "0, 0, 101.0010"]);
+  assert.equal(await page.locator("#residence figcaption").textContent(), "Times");
+  await close();
+});
+
+test("averages tell what is at the junctions, where the fastest lanes run, and numbers that the page has no words for", async () => {
+  const { page, troubles, close } = await open(browser, reportOf(full));
+  assert.deepEqual(await page.locator("#averages .table-box tbody tr").allTextContents(), ["The whole box, outside fibres0.40030.0–", "Within one diameter above a junction (mean of 6)0.5000.3000.0100", "Within one diameter below a junction (mean of 6)0no grains–"]);
+  const facts = await page.locator("#averages .facts > div").allTextContents();
+  assert.deepEqual(facts.slice(0, 3), ["Granular temperature, m²/s²0.001", "Something new, kg0.25", "More of itlow 1 m, high 2 m"]);
+  assert.match(facts[3], /2\.00 \(1\.50 to 2\.50 from layer to layer\) times the mean/);
+  const [height, lane] = await readOut(page, "averages", 0, 0.5);
+  assert.deepEqual([height, lane], ["1.00 mm", "3.00 mm, 2.00 × mean"]);
+  assert.deepEqual(troubles, []);
   await close();
 });
 
