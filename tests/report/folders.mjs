@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-const kTop = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
+export const kTop = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
 const kPng = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==", "base64");
 
 export const temporaryFolder = () => {
