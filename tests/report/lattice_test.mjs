@@ -33,6 +33,7 @@ test("all its sections are there, without a complaint, wide and on a phone, whic
     for (const id of ["result", "case", "flow", "averages", "touch", "residence", "checks", "performance", "files"]) assert.ok(ids.includes(id), `${id} is missing`);
     assert.equal(await page.getByText("This section could not be made").count(), 0);
     assert.doesNotMatch(await page.locator("main").innerText(), /\bundefined\b|\bNaN\b|\[object/);
+    assert.equal(await page.locator(".facts dd:empty").count(), 0, "a fact without a value");
     assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= (viewport ?? { width: 1280 }).width);
     assert.deepEqual(troubles, []);
     await close();
