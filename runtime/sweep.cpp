@@ -8,6 +8,7 @@
 
 #include "kernels/parallel.h"
 #include "runtime/child_process.h"
+#include "runtime/engine.h"
 #include "runtime/progress.h"
 #include "runtime/report.h"
 #include "runtime/run_folder.h"
@@ -116,8 +117,15 @@ class JobQueue {
   };
 
   void start(const Job& job) {
-    fs::create_directories(job.folder);
-    running_.push_back({&job, ChildProcess(job.arguments, job.folder / kConsole)});
+    try {
+      std::error_code error;
+      fs::create_directories(job.folder, error);
+      if (error) throw RunError(fmt::format("cannot make the folder {}: {}", job.folder.string(), error.message()));
+      running_.push_back({&job, ChildProcess(job.arguments, job.folder / kConsole)});
+    } catch (const RunError& e) {  // the others may have room
+      failed_ = true;
+      tell(job, e.what());
+    }
   }
   void stop() {  // nothing new begins; what runs saves its state
     if (!stopped_)
@@ -128,9 +136,12 @@ class JobQueue {
     const std::optional<int> code = r.process.poll();
     if (!code) return false;
     failed_ = failed_ || *code != 0;
-    fmt::print("[{}/{}] {}: {}\n", skipped_ + ++ended_, skipped_ + jobs_.size(), r.job->run->name, told(*r.job, *code));
-    std::fflush(stdout);
+    tell(*r.job, told(*r.job, *code));
     return true;
+  }
+  void tell(const Job& job, const std::string& what) {
+    fmt::print("[{}/{}] {}: {}\n", skipped_ + ++ended_, skipped_ + jobs_.size(), job.run->name, what);
+    std::fflush(stdout);
   }
 
   const std::vector<Job>& jobs_;

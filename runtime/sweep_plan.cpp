@@ -151,6 +151,29 @@ std::vector<std::string> read_set(TableReader& top, CaseNode& tree, KeysSet& set
   return result;
 }
 
+constexpr double kMostReference = 1e9;  // in any of the units: more than a slip of the pen leaves room for
+
+std::optional<SweepReference> read_reference(TableReader& top) {
+  if (!top.has("reference")) return std::nullopt;
+  TableReader t = top.table("reference");
+  SweepReference reference;
+  reference.label = t.text("label");
+  reference.value = t.number("value", positive(kMostReference, ""));
+  reference.unit = t.choice("unit", Choices<const char*>{{"kg/s", "kg/s"}, {"s", "s"}, {"kg", "kg"}});
+  t.finish();
+  return reference;
+}
+
+std::vector<SweepCaption> read_captions(TableReader& top) {
+  std::vector<SweepCaption> captions;
+  if (!top.has("captions")) return captions;
+  TableReader t = top.table("captions");
+  for (const char* chart : kSweepCharts)
+    if (t.has(chart)) captions.push_back({chart, t.text(chart)});
+  t.finish();
+  return captions;
+}
+
 std::string name_of(const SweepPlan& plan, const SweepRun& run) {
   std::string name;
   for (size_t p = 0; p < run.values.size(); ++p)
@@ -237,6 +260,7 @@ SweepPlan read_sweep(const std::string& path) {
   plan.case_file = case_beside(top);
   read_seeds(top, tree, plan, set);
   const std::vector<std::string> common = read_set(top, tree, set);
+  plan.reference = read_reference(top), plan.captions = read_captions(top);
   read_parameters(top, tree, plan, set);
   top.finish();
   const SourcePlace place = top.place("case");

@@ -3,6 +3,9 @@
 //     case                       the case file, relative to the sweep file
 //     seeds = [1, 2, 3]          every combination once for each seed; optional
 //     [set]                      keys of the case that are the same in all runs; optional
+//     [reference]                a line to draw in the charts of that quantity, e.g. a measurement; optional
+//       label, value, unit       unit: "kg/s" (mass flow), "s" (drain time) or "kg" (mass left)
+//     [captions]                 what a chart may be held against, in words; optional. Keys: kSweepCharts
 //     [[parameter]]              one or more (none: seeds only); the sweep is the product of all
 //       key, values              a key of the case as in --set, and what it takes
 //       keys, rows               or several keys that change together: one row of values for each step
@@ -33,6 +36,21 @@ struct SweepParameter {
   std::vector<SweepValue> values;
 };
 
+// The charts of a sweep's report that may have a caption.
+inline constexpr const char* kSweepCharts[] = {"flow_curves", "discharged_curves", "steady_flow", "drain_time",
+                                               "retained"};
+
+struct SweepCaption {
+  std::string chart, text;
+};
+
+// A level that the runs are held against. `value` in `unit`, one of kg/s, s, kg.
+struct SweepReference {
+  std::string label;
+  double value;
+  std::string unit;
+};
+
 struct SweepRun {
   std::string name;            // of its folder: letters, digits, and . _ + -
   std::vector<size_t> values;  // index of the step of each parameter
@@ -45,6 +63,8 @@ struct SweepPlan {
   std::string title, case_file;
   std::vector<SweepParameter> parameters;
   std::vector<uint64_t> seeds;
+  std::optional<SweepReference> reference;
+  std::vector<SweepCaption> captions;
   std::vector<SweepRun> runs;  // the last parameter changes fastest, seeds faster still
 };
 

@@ -72,6 +72,10 @@ ReportJson page_data(const SweepPlan& plan, const fs::path& out) {
   ReportJson& sweep = data["sweep"];
   sweep = {{"parameters", ReportJson::array()}, {"seeds", plan.seeds}, {"runs", ReportJson::array()}};
   for (const SweepParameter& p : plan.parameters) sweep["parameters"].push_back(parameter_data(p));
+  if (plan.reference)
+    sweep["reference"] = {
+        {"label", plan.reference->label}, {"value", plan.reference->value}, {"unit", plan.reference->unit}};
+  for (const SweepCaption& caption : plan.captions) sweep["captions"][caption.chart] = caption.text;
   for (const SweepRun& run : plan.runs) {
     const fs::path folder = out / run.name;
     const bool has_results = fs::exists(folder / "summary.json");

@@ -49,13 +49,33 @@ const drawMarks = (marks) => (u) => inFrame(u, (ctx, top, height, ratio) => {
   }
 });
 
+// Bands of +- spread[k] round the curves that have them, under the curves.
+const drawSpreads = (series) => (u) => inFrame(u, (ctx) => {
+  ctx.globalAlpha = 0.2;
+  series.forEach((s, index) => {
+    if (!s.spread || !u.series[index + 1].show) return;
+    ctx.fillStyle = cssColour(s.colour);
+    const at = (k, sign) => [u.valToPos(u.data[0][k], "x", true), u.valToPos(s.values[k] + sign * s.spread[k], "y", true)];
+    const known = (k) => isNumber(s.values[k]) && isNumber(s.spread[k]);
+    for (let from = 0, to = 0; from < s.values.length; from = to + 1) {
+      for (to = from; to < s.values.length && known(to); ++to);
+      if (to - from < 2) continue;
+      ctx.beginPath();
+      for (let k = from; k < to; ++k) ctx.lineTo(...at(k, 1));
+      for (let k = to - 1; k >= from; --k) ctx.lineTo(...at(k, -1));
+      ctx.fill();
+    }
+  });
+});
+
 // Vertical bars of +- errors[k] at the points of the series that have them.
 const drawErrors = (series) => (u) => {
   const { ctx } = u, ratio = devicePixelRatio;
   ctx.save();
   ctx.lineWidth = 1.5 * ratio;
+  ctx.setLineDash([]);
   series.forEach((s, index) => {
-    if (!s.errors) return;
+    if (!s.errors || !u.series[index + 1].show) return;
     ctx.strokeStyle = cssColour(s.colour);
     u.data[0].forEach((x, k) => {
       const value = u.data[index + 1][k], error = s.errors[k];
@@ -90,8 +110,21 @@ const seriesOptions = (s) => ({
   dash: s.dash,
   paths: s.steps ? uPlot.paths.stepped({ align: 1 }) : undefined,
   points: s.markers ? { show: true, size: 8, fill: cssColour(s.colour) } : { show: false },
-  value: (u, value) => (isNumber(value) ? s.text(value) : "–"),
+  value: (u, value, series, index) => (isNumber(value) ? s.text(value, index) : "–"),
 });
+
+// From 0, or below what lies below, to a little above what is in sight, bands included.
+const rangeWith = (series) => (u, low, high) => {
+  const [first, last] = u.series[0].idxs ?? [0, u.data[0].length - 1];
+  series.forEach((s, index) => {
+    if (!s.spread || !u.series[index + 1].show) return;
+    for (let k = first; k <= last; ++k) {
+      if (!isNumber(s.values[k]) || !isNumber(s.spread[k])) continue;
+      low = Math.min(low, s.values[k] - s.spread[k]), high = Math.max(high, s.values[k] + s.spread[k]);
+    }
+  });
+  return low === high ? [0, high > 0 ? 1.2 * high : 1] : [Math.min(0, low), high + 0.06 * (high - Math.min(0, low))];
+};
 
 const chartOptions = (c, width) => ({
   width,
@@ -104,13 +137,13 @@ const chartOptions = (c, width) => ({
   legend: { live: true, markers: { width: 0, fill: (u, k) => cssColour(c.series[k - 1].colour) } },
   scales: {
     x: { time: false, range: c.xRange },
-    y: { range: c.yRange ?? ((u, low, high) => (low === high ? [0, high > 0 ? 1.2 * high : 1] : [Math.min(0, low), high + 0.06 * (high - Math.min(0, low))])) },
+    y: { range: c.yRange ?? rangeWith(c.series) },
   },
   axes: [axis(c.xLabel, { size: 30, ...c.xAxis }), axis(c.yLabel, { size: width < kPhoneWidth ? 44 : 56 })],
   series: [{ label: c.xName, value: (u, value) => (isNumber(value) ? c.xText(value) : "–") }, ...c.series.map(seriesOptions)],
   hooks: {
     drawClear: [drawBands(c.bands ?? [])],
-    drawAxes: [drawMarks(c.marks ?? [])],
+    drawAxes: [drawMarks(c.marks ?? []), drawSpreads(c.series)],
     draw: [drawErrors(c.series)],
     setScale: [(u, key) => key === "x" && c.onZoom?.(u)],
   },
@@ -118,7 +151,8 @@ const chartOptions = (c, width) => ({
 
 // A chart that fills its parent's width:
 //   x, xName, xText(value), xLabel   the axis; xText is the read-out's
-//   series  [{label, values, colour, text(value), dash?, width?, markers?, errors?, steps?}]
+//   series  [{label, values, colour, text(value, index), dash?, width?, markers?, errors?, spread?, steps?}]
+//           errors: bars at the points; spread: a band round the curve; both +- so much for each value
 //   yLabel, bands? [{from, to}], marks? [{at, label}], sync? (charts that move and zoom together), xRange?, yRange?
 const chart = (c) => {
   if (typeof uPlot === "undefined")
@@ -148,8 +182,8 @@ const chart = (c) => {
     if (now > 0 && now !== width) { width = now; build(); }
   }).observe(holder);
   charts.add(me);
-  // New values for the curves of the same axis.
-  holder.update = (values) => { c.series.forEach((s, k) => { s.values = values[k]; }); if (plot) build(); };
+  // The same curves with new values and spreads on the same axis: [{values, spread?}, ...].
+  holder.update = (curves) => { c.series.forEach((s, k) => { s.values = curves[k].values, s.spread = curves[k].spread; }); if (plot) build(); };
   return h("div", { class: "chart-box" }, reset, holder);
 };
 

@@ -47,6 +47,27 @@ const onCommonAxis = (curves, from = -Infinity) => {
   return { x, ys: curves.map((c) => x.map((at) => valueAt(c.x, c.y, at))) };
 };
 
+// The mean of values and its standard error from their scatter; 0 for one alone, which has none.
+const meanAndError = (values) => {
+  const n = values.length, mean = values.reduce((sum, v) => sum + v, 0) / n;
+  const square = values.reduce((sum, v) => sum + (v - mean) ** 2, 0);
+  return { mean, error: n > 1 ? Math.sqrt(square / (n - 1) / n) : 0 };
+};
+
+// Several curves on one axis as {values, spread}: their mean where all of them are, and its standard error.
+const meanCurve = (ys) => {
+  if (ys.length === 1) return { values: ys[0], spread: null };
+  const points = ys[0].map((_, k) => (ys.every((y) => isNumber(y[k])) ? meanAndError(ys.map((y) => y[k])) : null));
+  return { values: points.map((p) => p && p.mean), spread: points.map((p) => p && p.error) };
+};
+
+// The first x at which the curve reaches `level`; null if it never does.
+const firstReach = (xs, ys, level) => {
+  const k = ys.findIndex((y) => y >= level);
+  if (k <= 0) return k === 0 ? xs[0] : null;
+  return xs[k - 1] + ((level - ys[k - 1]) / (ys[k] - ys[k - 1])) * (xs[k] - xs[k - 1]);
+};
+
 // A window of 1, 2 or 5 times a power of ten, near `share` of the duration.
 const niceWindow = (seconds, share) => {
   const wanted = seconds * share;

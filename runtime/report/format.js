@@ -27,6 +27,7 @@ const units = {
   mass: [[1, "kg"], [1e-3, "g"], [1e-6, "mg"]],
   flow: [[1, "kg/s"], [1e-3, "g/s"], [1e-6, "mg/s"]],
   time: [[1, "s"], [1e-3, "ms"], [1e-6, "µs"], [1e-9, "ns"]],
+  energy: [[1, "J"], [1e-3, "mJ"], [1e-6, "µJ"], [1e-9, "nJ"]],
   bytes: [[1e9, "GB"], [1e6, "MB"], [1e3, "kB"], [1, "bytes"]],
   pressure: [[1e9, "GPa"], [1e6, "MPa"], [1e3, "kPa"], [1, "Pa"]],
 };
@@ -64,9 +65,9 @@ const duration = (seconds) => {
 const percent = (share) => `${plain(100 * share)} %`;
 
 // "sliding_work_J" in words, for keys that the page has no words of its own for: "Sliding work, J".
-const kUnitOfKey = /_((?:kg|g|s|m[23]?|um|mm|n|j|pa|k|w|deg|bytes)(?:_per_(?:kg|s|m[23]?|k))?|per_(?:s|m[23]?))$/i;
+const kUnitOfKey = /_((?:kg|g|s|m[23]?|um|mm|n|j|pa|k|w|deg|bytes)(?:_per_(?:kg|s2?|m[23]?|k))?|per_(?:s|m[23]?))$/i;
 const kUnitCase = { n: "N", j: "J", pa: "Pa", k: "K", w: "W" };
-const unitInWords = (unit) => unit.split("_per_").map((u) => kUnitCase[u] ?? u).join("/").replace(/^per_/, "1/").replace(/m([23])/, (_, n) => `m${"²³"[n - 2]}`);
+const unitInWords = (unit) => unit.split("_per_").map((u) => kUnitCase[u] ?? u).join("/").replace(/^per_/, "1/").replace(/\b([ms])([23])/g, (_, unit, n) => `${unit}${"²³"[n - 2]}`);
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 const lowerFirst = (text) => text.charAt(0).toLowerCase() + text.slice(1);
 const inWords = (key) => {

@@ -3,6 +3,7 @@
 set(report_scripts
     dom.js format.js curves.js chart.js table.js
     sections/headline.js
+    sections/sweep_measures.js
     sections/sweep_table.js
     sections/sweep_charts.js
     sections/case_words.js

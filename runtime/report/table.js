@@ -10,7 +10,7 @@ const table = (columns, rows) =>
 // Names and values, one under the other: [[name, value], ...]; pairs without a value are left out.
 const facts = (pairs) =>
   h("dl", { class: "facts" },
-    pairs.filter(([, value]) => value !== null && value !== undefined && value !== "")
+    pairs.filter(([, value]) => value !== null && value !== undefined && value !== false && value !== "")
       .map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
 
 const valueText = (value) =>

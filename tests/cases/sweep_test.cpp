@@ -1,6 +1,7 @@
 // A sweep as a whole: it runs its table, skips what is done, goes on after a kill, and refuses what contradicts it.
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -40,8 +41,8 @@ stage.fill.mass = )" << mass
 
   // A process `scree sweep` with this test's file and folder; its output is said().
   pid_t start(std::vector<std::string> more = {}) const {
-    std::vector<std::string> words = {SCREE_COMMAND, "sweep", file().string(), "--out", out().string(),
-                                      "--threads",   "1"};
+    std::vector<std::string> words = {SCREE_COMMAND, "sweep", file().string(), "--threads", "1"};
+    if (!std::ranges::count(more, "--out")) more.insert(more.end(), {"--out", out().string()});
     words.insert(words.end(), more.begin(), more.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -175,6 +176,37 @@ TEST_F(Sweep, a_wrong_file_is_bad_input) {
   EXPECT_EQ(sweep(), 2);
   EXPECT_NE(said().find("colour"), std::string::npos) << said();
   EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Sweep, a_folder_that_cannot_be_made_is_named) {
+  struct Row {
+    const char* what;
+    std::string out, expected;
+  };
+  const std::string in_the_way = (folder_.path() / "in_the_way").string();
+  std::ofstream(in_the_way) << "a file\n";
+  for (const Row& row :
+       {Row{"a file in its place", in_the_way, "cannot make the results folder " + in_the_way + ": "},
+        Row{"a file above it", in_the_way + "/swept",
+            "cannot make the results folder " + in_the_way + "/swept: Not a directory"},
+        Row{"where nobody may write", "/proc/swept", "cannot make the results folder /proc/swept: "}}) {
+    SCOPED_TRACE(row.what);
+    EXPECT_EQ(sweep({"--out", row.out}), 3);
+    EXPECT_NE(said().find(row.expected), std::string::npos) << said();
+    EXPECT_EQ(said().find("runs,"), std::string::npos) << "it began: " << said();
+  }
+}
+
+TEST_F(Sweep, a_run_whose_folder_cannot_be_made_is_told_and_the_others_go_on) {
+  write("[1]", "0.3e-3", "0.03");
+  fs::create_directories(out());
+  std::ofstream(run(kRuns[0])) << "a file\n";
+  EXPECT_EQ(sweep(), 3);
+  EXPECT_NE(said().find(std::string(kRuns[0]) + ": cannot make the folder " + run(kRuns[0]).string() + ": "),
+            std::string::npos)
+      << said();
+  EXPECT_EQ(read_summary(run(kRuns[2]))["status"], "done");
+  EXPECT_TRUE(fs::exists(out() / "report.html"));
 }
 
 TEST_F(Sweep, the_listed_commands_do_what_the_sweep_would) {

@@ -9,6 +9,7 @@ const kFlags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
 
 export const kWide = { width: 1280, height: 900 };
 export const kPhone = { width: 360, height: 740 };
+const kPatience = 120e3;  // ms: beside other work a page of a second may take half a minute
 
 export const startBrowser = () => chromium.launch({ executablePath: process.env.SCREE_BROWSER, args: kFlags });
 
@@ -17,6 +18,7 @@ export const open = async (browser, file, { viewport = kWide, colorScheme = "lig
   const context = await browser.newContext({ viewport, colorScheme });
   await context.setOffline(true);
   const page = await context.newPage();
+  page.setDefaultTimeout(kPatience);
   const troubles = [], url = pathToFileURL(file).href;
   page.on("console", (message) => troubles.push(`console ${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => troubles.push(`error: ${error.message}`));

@@ -1,13 +1,13 @@
 // The report in a browser: it opens offline without a complaint, its chart answers with the right numbers, it fits a phone.
 import assert from "node:assert/strict";
-import { rmSync, writeFileSync, mkdirSync } from "node:fs";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { kPhone, open, startBrowser } from "./browser.mjs";
-import { addPicturesAndFields, discharged, kOpen, kRate, runSmallSweep, scree, temporaryFolder, writeRun } from "./folders.mjs";
+import { addPicturesAndFields, discharged, kOpen, kRate, makeKnownSweep, runSmallSweep, scree, temporaryFolder, writeRun } from "./folders.mjs";
 
-let browser, place, full, swept;
+let browser, place, full, swept, known;
 
 before(async () => {
   browser = await startBrowser();
@@ -16,6 +16,7 @@ before(async () => {
   addPicturesAndFields(full);
   scree("report", full);
   swept = runSmallSweep(place.folder);
+  known = makeKnownSweep(place.folder);
 });
 after(async () => {
   await browser?.close();
@@ -103,7 +104,7 @@ test("the choice of the averaging window changes the curve", async () => {
 test("no page scrolls sideways on a phone", async () => {
   const compared = join(place.folder, "compared.html");
   scree("report", full, join(swept, "rolling_cdt__seed_1"), join(swept, "rolling_epsd2__seed_2"), "--out", compared);
-  for (const file of [reportOf(full), compared, reportOf(swept), reportOf(join(swept, "rolling_cdt__seed_1"))]) {
+  for (const file of [reportOf(full), compared, reportOf(swept), reportOf(known), reportOf(join(swept, "rolling_cdt__seed_1"))]) {
     const { page, troubles, close } = await open(browser, file, { viewport: kPhone });
     assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= kPhone.width, file);
     assert.deepEqual(troubles, [], file);
@@ -137,11 +138,24 @@ test("pictures are in the page itself, with captions, and open large", async () 
 
 test("touch maps, residence and retention are told as numbers", async () => {
   const { page, close } = await open(browser, reportOf(full));
-  assert.deepEqual(await page.locator("#touch tbody tr").allTextContents(), ["Fibres62 %25 %", "Fibres, upper half90 %2 %", "Channel50 %10 %"]);
+  assert.deepEqual(await page.locator("#touch tbody tr").allTextContents(), ["Fibres62 %25 %5 %3001.5025.0", "Fibres, upper half90 %2 %––––", "Channel50 %10 %––––"]);
   assert.match(await page.locator("#residence").textContent(), /500 mg of 1\.00 g that entered/);
   const [time, share] = await readOut(page, "residence", 0, 0.5);
   assert.ok(Math.abs(number(time) - 0.2) < 0.11 && [2, 6].some((s) => Math.abs(number(share) - s) < 1e-6), `${share} at ${time}`);
   assert.deepEqual(await page.locator("#residence .table-box tbody tr").allTextContents(), ["5, 0, 103.0030", "0, 0, 101.0010"]);
+  assert.equal(await page.locator("#residence figcaption").textContent(), "Times");
+  await close();
+});
+
+test("averages tell what is at the junctions, where the fastest lanes run, and numbers that the page has no words for", async () => {
+  const { page, troubles, close } = await open(browser, reportOf(full));
+  assert.deepEqual(await page.locator("#averages .table-box tbody tr").allTextContents(), ["The whole box, outside fibres0.40030.0–", "Within one diameter above a junction (mean of 6)0.5000.3000.0100", "Within one diameter below a junction (mean of 6)0no grains–"]);
+  const facts = await page.locator("#averages .facts > div").allTextContents();
+  assert.deepEqual(facts.slice(0, 3), ["Granular temperature, m²/s²0.001", "Something new, kg0.25", "More of itlow 1 m, high 2 m"]);
+  assert.match(facts[3], /2\.00 \(1\.50 to 2\.50 from layer to layer\) times the mean/);
+  const [height, lane] = await readOut(page, "averages", 0, 0.5);
+  assert.deepEqual([height, lane], ["1.00 mm", "3.00 mm, 2.00 × mean"]);
+  assert.deepEqual(troubles, []);
   await close();
 });
 
@@ -190,6 +204,27 @@ test("lost particles are told as a check that does not hold", async () => {
   await close();
 });
 
+test("the energy ledger is told as a check that holds or does not", async () => {
+  const ledger = { kinetic_J: 1e-6, gravity_work_J: 2e-3, dissipated_by_friction_J: 1.5e-3, energy_residual_share: 1.5e-4, momentum_residual_share: 2.4e-6, tolerance: 1e-3, closes: true };
+  const closing = writeRun(join(place.folder, "closing"), { changes: { energy: ledger } });
+  const open_ended = writeRun(join(place.folder, "open_ended"), { changes: { energy: { ...ledger, energy_residual_share: 0.02, closes: false } } });
+  for (const [folder, state, text] of [
+    [closing, "holds", "Holds. Energy: 0.015 % of the energy turned over is in no term of the ledger, 0.00024 % of the momentum; rounding explains up to 0.10 %."],
+    [open_ended, "fails", "Does not hold. Energy: 2.0 % of the energy turned over is in no term of the ledger, 0.00024 % of the momentum; rounding explains up to 0.10 %."]]) {
+    scree("report", folder);
+    const { page, troubles, close } = await open(browser, reportOf(folder));
+    assert.equal(await page.locator(`#checks .${state}`, { hasText: "Energy" }).textContent(), text);
+    assert.deepEqual(await page.locator("#checks tbody td:first-child").allTextContents(), ["Gravity work", "Dissipated by friction", "Kinetic"]);
+    assert.deepEqual(troubles, []);
+    await close();
+  }
+  const both = join(place.folder, "ledgers.html");
+  scree("report", full, closing, open_ended, "--out", both);
+  const { page, close } = await open(browser, both);
+  assert.deepEqual(await page.locator("#checks tbody td:last-child").allTextContents(), ["no ledger", "holds", "does not hold"]);
+  await close();
+});
+
 test("several runs lie over one another from the moment the drain began, and what differs is listed", async () => {
   const other = writeRun(join(place.folder, "other"), { friction: 0.7, changes: { steady_mass_flow_kg_per_s: 6e-3 } });
   const page_file = join(place.folder, "two.html");
@@ -213,5 +248,59 @@ test("a sweep has a row for each combination, a chart for each parameter, and li
     "rolling_cdt__seed_1/report.html", "rolling_cdt__seed_2/report.html", "rolling_epsd2__seed_1/report.html", "rolling_epsd2__seed_2/report.html"]);
   assert.equal(await page.locator("#trends .chart").count(), 1);
   assert.deepEqual(troubles, []);
+  await close();
+});
+
+test("a sweep's curves are means over its seeds with a band of one standard error, beside the reference", async () => {
+  const { page, troubles, close } = await open(browser, reportOf(known));
+  assert.deepEqual(await page.locator("#flow .chart").first().locator(".u-series .u-label").allTextContents(), ["time", "cdt", "epsd2", "measured"]);
+  const [time, cdt, epsd2, measured] = await readOut(page, "flow", 0, 0.6);
+  assert.deepEqual([cdt, epsd2, measured], ["7.0 ± 1.0 g/s", "5.000 g/s", "6.500 g/s"], `at ${time}`);
+  const [again, mass] = await readOut(page, "flow", 1, 0.6);
+  assert.ok(Math.abs(number(mass) - 7 * number(again)) < 0.05, `${mass} at ${again}`);
+  assert.match(mass, /±/);
+  // Coloured between the seeds' 6 and 8 g/s, bare above and below.
+  const colours = await page.evaluate(() => {
+    const canvas = document.querySelector("#flow canvas"), over = document.querySelector("#flow .u-over").getBoundingClientRect(), at = canvas.getBoundingClientRect();
+    const ratio = canvas.width / at.width, top = 1.06 * 8;
+    const x = Math.round((over.left - at.left + 0.7 * over.width) * ratio);
+    const column = canvas.getContext("2d").getImageData(x, 0, 1, canvas.height).data;
+    return [8.3, 7.7, 6.2, 5.5].map((rate) => Math.round((over.top - at.top + (1 - rate / top) * over.height) * ratio)).map((y) => column.slice(4 * y, 4 * y + 4).join());
+  });
+  assert.equal(colours[1], colours[2]);
+  assert.notEqual(colours[0], colours[1]);
+  assert.equal(colours[0], colours[3]);
+  assert.deepEqual(troubles, []);
+  await close();
+});
+
+test("a sweep tells flow, drain time and mass left against each parameter, with captions and the reference where it belongs", async () => {
+  const { page, troubles, close } = await open(browser, reportOf(known));
+  assert.deepEqual(await page.locator("#trends h3").allTextContents(), ["Steady mass flow against rolling", "Drain time to 95 % discharged against rolling", "Mass left in the end against rolling"]);
+  assert.deepEqual(await page.locator(".caption").allTextContents(), ["As somebody's mass flow against rolling.", "As somebody's curves."]);
+  const [, flow, measured] = await readOut(page, "trends", 0, 0.25);
+  assert.deepEqual([flow, measured], ["7.0 ± 1.0 g/s", "6.500 g/s"]);
+  // 95 % of 3.3 g at 8 g/s and of 2.5 g at 6 g/s: 0.3919 s and 0.3958 s.
+  assert.equal((await readOut(page, "trends", 1, 0.25))[1], "393.9 ± 2.0 ms");
+  assert.equal((await readOut(page, "trends", 2, 0.25)).length, 2, "no rate among masses");
+  assert.match((await page.locator("#sweep tbody tr").allTextContents())[0], /^cdt7\.0 ± 1\.0393\.9 ± 2\.0100\.0seed 1, seed 2$/);
+  assert.deepEqual(troubles, []);
+  await close();
+});
+
+test("a run that jams has no drain time and does not shorten that of the others", async () => {
+  const { page, close } = await open(browser, reportOf(makeKnownSweep(place.folder, { rolling_epsd2__seed_2: 0.2 })));
+  assert.equal(await page.locator("#trends h3").nth(1).textContent(), "Drain time to 95 % discharged against rolling");
+  assert.match(await page.locator("#trends").textContent(), /Drain time to 95 % discharged: 1 of the runs has none, as it did not flow long enough/);
+  await close();
+});
+
+test("runs that end at a share of the mass are not said to show what stays", async () => {
+  const short = join(place.folder, "short.toml"), out = join(place.folder, "short");
+  writeFileSync(short, readFileSync(join(place.folder, "small.toml"), "utf8").replace("discharged_fraction = 1", "discharged_fraction = 0.01"));
+  scree("sweep", short, "--out", out);
+  const { page, close } = await open(browser, reportOf(out));
+  assert.match(await page.locator("#trends").textContent(), /ends a run when 1 % of the mass has left/);
+  assert.ok(!(await page.locator("#trends h3").allTextContents()).some((text) => text.startsWith("Mass left")));
   await close();
 });

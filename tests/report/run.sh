@@ -20,4 +20,6 @@ if ! cmp -s "$here/package-lock.json" "$build/installed"; then
   fi
   cp "$here/package-lock.json" "$build/installed"
 fi
-SCREE_COMMAND=$scree SCREE_BROWSER=$browser SCREE_MODULES=$build exec node --test "$here/report_test.mjs"
+export SCREE_COMMAND=$scree SCREE_BROWSER=$browser SCREE_MODULES=$build
+node --test "$here/report_test.mjs"
+exec node --test "$here/lattice_test.mjs"

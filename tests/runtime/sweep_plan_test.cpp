@@ -1,6 +1,7 @@
 // Sweep files: how their tables expand into runs, and what is refused, with the place and what is allowed.
 #include <gtest/gtest.h>
 
+#include "runtime/case_physics.h"
 #include "runtime/case_reader.h"
 #include "runtime/sweep_plan.h"
 #include "tests/runtime/case_text.h"
@@ -90,6 +91,26 @@ values = [0.8, 0.9]
   EXPECT_EQ(names_of(plan), (Names{"porosity_0.8", "porosity_0.9"}));
 }
 
+TEST(SweepPlan, has_what_its_charts_are_held_against) {
+  const testing::Folder folder;
+  const SweepPlan plan = plan_of(folder, R"(case = "good.toml"
+[reference]
+label = "measured"
+value = 7.8e-3
+unit = "kg/s"
+[captions]
+steady_flow = "as measured at one porosity"
+)");
+  ASSERT_TRUE(plan.reference);
+  EXPECT_EQ(plan.reference->label, "measured");
+  EXPECT_EQ(plan.reference->value, 7.8e-3);
+  EXPECT_EQ(plan.reference->unit, "kg/s");
+  ASSERT_EQ(plan.captions.size(), 1u);
+  EXPECT_EQ(plan.captions[0].chart, "steady_flow");
+  EXPECT_EQ(plan.captions[0].text, "as measured at one porosity");
+  EXPECT_FALSE(plan_of(folder, "case = \"good.toml\"\n").reference);
+}
+
 struct Wrong {
   const char* what;
   const char* text;      // behind 'case = "good.toml"'
@@ -98,7 +119,7 @@ struct Wrong {
 
 // clang-format off
 const Wrong kWrong[] = {
-    {"unknown key", "seed = [1]", "sweep.toml:2:1: key 'seed': unknown key (value [1]), known here: title, case, seeds, set, parameter; did you mean 'seeds'?"},
+    {"unknown key", "seed = [1]", "sweep.toml:2:1: key 'seed': unknown key (value [1]), known here: title, case, seeds, set, reference, captions, parameter; did you mean 'seeds'?"},
     {"unknown key of a parameter", "[[parameter]]\nkey = \"seed\"\nvalue = [1]\n", "sweep.toml:4:1: key 'parameter[1].value': unknown key (value [1]), known here: key, keys, values; did you mean 'values'?"},
     {"a key that the case does not know", "[[parameter]]\nkey = \"lattice.porosty\"\nvalues = [0.8]\n", "sweep.toml:4:11: run 'porosty_0.8': --set lattice.porosty=0.8: key 'lattice.porosty': unknown key"},
     {"and what it may be", "[[parameter]]\nkey = \"lattice.porosty\"\nvalues = [0.8]\n", "did you mean 'porosity'?"},
@@ -119,6 +140,15 @@ const Wrong kWrong[] = {
     {"a key twice", "[[parameter]]\nkey = \"seed\"\nvalues = [1]\n[[parameter]]\nkey = \"seed\"\nlabel = \"b\"\nvalues = [2]\n", "sweep.toml:6:7: the case's key 'seed' is set twice, the other time at"},
     {"seeds and the seed", "seeds = [1]\n[[parameter]]\nkey = \"seed\"\nvalues = [1]\n", "the case's key 'seed' is set twice"},
     {"set and swept", "[set]\noutput.interval = 1e-3\n[[parameter]]\nkey = \"output.interval\"\nvalues = [1e-3]\n", "the case's key 'output.interval' is set twice"},
+    {"unknown key of the reference", "[reference]\nlabel = \"measured\"\nvalue = 7.8e-3\nunits = \"kg/s\"\n", "sweep.toml:5:1: key 'reference.units': unknown key (value \"kg/s\"), known here: label, value, unit; did you mean 'unit'?"},
+    {"unknown key of a whole reference", "[reference]\nlabel = \"measured\"\nvalue = 7.8e-3\nunit = \"kg/s\"\ncolour = \"red\"\n", "sweep.toml:6:1: key 'reference.colour': unknown key (value \"red\"), known here: label, value, unit"},
+    {"a reference in another unit", "[reference]\nlabel = \"measured\"\nvalue = 7.8\nunit = \"g/s\"\n", "sweep.toml:5:8: key 'reference.unit': unknown value 'g/s', known: kg/s, s, kg"},
+    {"a reference of words", "[reference]\nlabel = \"measured\"\nvalue = \"7.8 g/s\"\nunit = \"kg/s\"\n", "sweep.toml:4:9: key 'reference.value': \"7.8 g/s\" is of the wrong type, must be a number"},
+    {"a reference below nothing", "[reference]\nlabel = \"measured\"\nvalue = -1\nunit = \"s\"\n", "key 'reference.value': -1 is out of range, must be greater than 0"},
+    {"a reference without a unit", "[reference]\nlabel = \"measured\"\nvalue = 1\n", "key 'reference.unit': is missing"},
+    {"a reference without a name", "[reference]\nvalue = 1\nunit = \"s\"\n", "sweep.toml:2:1: key 'reference.label': is missing"},
+    {"two references", "[[reference]]\nlabel = \"a\"\n[[reference]]\nlabel = \"b\"\n", "key 'reference': "},
+    {"a caption of no chart", "[captions]\ndrain = \"as measured\"\n", "sweep.toml:3:1: key 'captions.drain': unknown key (value \"as measured\"), known here: flow_curves, discharged_curves, steady_flow, drain_time, retained"},
     {"two labels alike", "[[parameter]]\nkey = \"pair.bead+bead.restitution\"\nvalues = [0.1]\n[[parameter]]\nkey = \"pair.bead+steel.restitution\"\nvalues = [0.1]\n", "two parameters are called 'restitution': give this one another label"},
 };
 // clang-format on
@@ -138,9 +168,18 @@ TEST(SweepPlan, wrong_files_are_refused_with_the_place_and_what_is_allowed) {
 
 TEST(SweepPlan, every_shipped_sweep_is_in_order) {
   const std::filesystem::path cases = std::filesystem::path(SCREE_SOURCE_DIR) / "cases" / "olhx";
-  const std::pair<const char*, size_t> shipped[] = {{"porosity", 6}, {"friction", 6}, {"rolling", 4}};
+  const std::pair<const char*, size_t> shipped[] = {{"porosity", 6}, {"friction", 6}, {"rolling", 4}, {"diameter", 6}};
   for (const auto& [name, runs] : shipped)
     EXPECT_EQ(read_sweep((cases / fmt::format("sweep_{}.toml", name)).string()).runs.size(), runs) << name;
+}
+
+TEST(SweepPlan, the_shipped_diameters_keep_the_time_step_s_share_of_the_rayleigh_time) {
+  const SweepPlan plan =
+      read_sweep((std::filesystem::path(SCREE_SOURCE_DIR) / "cases/olhx/sweep_diameter.toml").string());
+  const auto share = [](const Case& c) { return time_step_of(c) / smallest_rayleigh_time(c); };
+  const double of_the_demo = share(read_case(plan.case_file, {}));
+  for (const SweepRun& run : plan.runs)
+    EXPECT_NEAR(share(read_case(plan.case_file, run.set)), of_the_demo, 1e-9) << run.name;
 }
 
 TEST(SweepPlan, the_case_must_be_there) {

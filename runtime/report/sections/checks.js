@@ -38,12 +38,30 @@ const curveCheck = (run, s) => {
   ];
 };
 
+// What the ledger's terms leave over, as shares of what was turned over; `closes` is the program's own verdict.
+const energyCheck = ({ closes, tolerance, energy_residual_share: energy, momentum_residual_share: momentum }) => {
+  if (typeof closes !== "boolean") return null;
+  const shares = [isNumber(energy) && `${smallShare(energy)} of the energy turned over is in no term of the ledger`,
+    isNumber(momentum) && `${smallShare(momentum)} of the momentum`].filter(Boolean).join(", ");
+  return check(closes, `Energy: ${shares || (closes ? "the ledger closes" : "the ledger does not close")}${isNumber(tolerance) ? `; rounding explains up to ${smallShare(tolerance)}` : ""}.`);
+};
+const smallShare = (share) => `${significant(100 * share, 2)} %`;
+
+const ledgerOf = (s) => s?.energy ?? s?.energy_ledger;
+
 const checksOf = (run) => {
   const s = run.summary;
   if (!s) return null;
-  const ledger = s.energy ?? s.energy_ledger;
-  return [h("ul", { class: "checks" }, particleCheck(s), massCheck(run, s), curveCheck(run, s)),
-    ledger && [h("h3", {}, "Energy"), anyTable(ledger)]];
+  const ledger = ledgerOf(s), terms = ledger && Object.fromEntries(Object.entries(ledger).filter(([key]) => /_J$/.test(key)));
+  return [h("ul", { class: "checks" }, particleCheck(s), massCheck(run, s), curveCheck(run, s), ledger && energyCheck(ledger)),
+    ledger && [h("h3", {}, "Energy ledger, from the run's beginning to its end"), energyTable(terms)]];
+};
+
+// The ledger's terms, the largest first.
+const energyTable = (terms) => {
+  const rows = Object.entries(terms).filter(([, value]) => isNumber(value)).sort(([, a], [, b]) => Math.abs(b) - Math.abs(a));
+  const [factor, unit] = unitFor("energy", rows[0]?.[1] ?? 1);
+  return table([{ title: "Energy" }, { title: unit, number: true }], rows.map(([key, value]) => [inWords(key.replace(/_J$/, "")), significant(value / factor, 4)]));
 };
 
 addSection({
@@ -53,7 +71,9 @@ addSection({
     if (runs.length === 1) return checksOf(runs[0]);
     const ended = runs.filter((run) => run.summary);
     if (ended.length === 0) return null;
-    return table([{ title: "Run" }, { title: "Lost particles", number: true }, { title: "Discharged", number: true }, { title: "Left", number: true }],
-      ended.map((run) => [run.label, grouped(run.summary.lost_particles), withUnit("mass", run.summary.mass_discharged_kg, 5), withUnit("mass", run.summary.mass_retained_kg, 5)]));
+    const withLedger = ended.some((run) => ledgerOf(run.summary));
+    const verdict = (ledger) => (typeof ledger?.closes !== "boolean" ? "no ledger" : ledger.closes ? "holds" : h("strong", { class: "bad" }, "does not hold"));
+    return table([{ title: "Run" }, { title: "Lost particles", number: true }, { title: "Discharged", number: true }, { title: "Left", number: true }, ...(withLedger ? [{ title: "Energy" }] : [])],
+      ended.map((run) => [run.label, grouped(run.summary.lost_particles), withUnit("mass", run.summary.mass_discharged_kg, 5), withUnit("mass", run.summary.mass_retained_kg, 5), ...(withLedger ? [verdict(ledgerOf(run.summary))] : [])]));
   },
 });

@@ -7,13 +7,24 @@ const touchedParts = (value, path = []) => {
   return isNumber(value.touched_share) ? [[path.join(", ") || "all", value], ...inner] : inner;
 };
 
+// Columns of the table, where a run has them: [title, text(part)].
+const kTouchColumns = [
+  ["Touched, share of time", (p) => isNumber(p.touched_share) && percent(p.touched_share)],
+  ["Never touched, share of area", (p) => isNumber(p.dead_share) && percent(p.dead_share)],
+  ["Out of reach, share of area", (p) => isNumber(p.out_of_reach_share) && percent(p.out_of_reach_share)],
+  ["Contacts at a time", (p) => isNumber(p.contacts_per_m2) && isNumber(p.exposed_area_m2) && significant(p.contacts_per_m2 * p.exposed_area_m2)],
+  ["Contacts, 1/mm²", (p) => isNumber(p.contacts_per_m2) && significant(1e-6 * p.contacts_per_m2)],
+  ["Mean normal force, µN", (p) => isNumber(p.mean_normal_force_N) && significant(1e6 * p.mean_normal_force_N)],
+  ["Pressure, Pa", (p) => isNumber(p.pressure_Pa) && significant(p.pressure_Pa)],
+  ["Sliding work, W/m²", (p) => isNumber(p.sliding_work_W_per_m2) && significant(p.sliding_work_W_per_m2)],
+];
+
 const touchTable = (touch) => {
   const parts = touchedParts(touch);
   if (parts.length === 0) return anyTable(touch);
-  const numbers = ["mean_normal_force_N", "pressure_Pa", "sliding_work_W_per_m2"].filter((key) => parts.some(([, p]) => isNumber(p[key])));
-  return table(
-    [{ title: "Surface" }, { title: "Touched, share of time", number: true }, { title: "Never touched, share of area", number: true }, ...numbers.map((key) => ({ title: inWords(key), number: true }))],
-    parts.map(([name, p]) => [capital(name), percent(p.touched_share), isNumber(p.dead_share) ? percent(p.dead_share) : "–", ...numbers.map((key) => significant(p[key]))]));
+  const columns = kTouchColumns.filter(([, text]) => parts.some(([, p]) => text(p)));
+  return table([{ title: "Surface" }, ...columns.map(([title]) => ({ title, number: true }))],
+    parts.map(([name, p]) => [capital(name), ...columns.map(([, text]) => text(p) || "–")]));
 };
 
 addSection({
@@ -23,6 +34,7 @@ addSection({
     const tables = runs.filter((run) => run.summary?.touch).map((run) => {
       const window = run.summary.touch.window_s;
       return [runs.length > 1 && h("h3", {}, swatch(run.colour), " ", run.label), touchTable(run.summary.touch),
+        touchedParts(run.summary.touch).some(([, p]) => p.out_of_reach_share > 0) && note("Out of reach: where no grain fits, in corners of fibres and walls; it counts as never touched."),
         Array.isArray(window) && note(`Counted from ${significant(window[0])} s to ${significant(window[1])} s.`)];
     });
     const pictures = gallery(runs, "touch");
