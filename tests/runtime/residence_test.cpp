@@ -189,6 +189,50 @@ TEST(Residence, WritesWhatIsLeftAtEachJunction) {
   EXPECT_NEAR(s["retained_at_no_junction_kg"].get<double>(), grains[3].mass, 1e-6 * grains[3].mass);
 }
 
+// One lies on a node, one on the middle of a fibre between two: both have a nearest node, one is at it.
+TEST(Residence, TellsWhatIsLeftAtANodeFromWhatIsLeftAlongFibres) {
+  Case c = falling_case();
+  c.gravity = {0, 0, 0};
+  const double fibre = 0.002, grain = 0.001;  // m, radii
+  const OctetLattice lattice = octet_lattice(0.04, {1, 1, 2}, {0, 0, 0.1});
+  add_solid(c, fibre_primitives(lattice, fibre, {0, 0}));
+  c.output.residence.entry = 0.18;
+  Fall run(c);
+  const Vec3 node{0.02, 0.02, 0.14}, other{0.04, 0.04, 0.14}, up{0, 0, fibre + grain};
+  const Vec3 along = unit(other - node), edge = (2 * fibre + grain) * along;  // as far as "near" goes
+  const double mass = sphere(c, 0, node).mass;
+  const std::vector<ParticleState> grains = {sphere(c, 0, node + up), sphere(c, 0, 0.5 * (node + other) + up),
+                                             sphere(c, 0, node + 0.99 * edge + Vec3{0, 0, 1e-4}),
+                                             sphere(c, 0, node - 1.01 * edge)};
+  run.engine->insert(grains);
+  run.residence.finish(run.view());
+  const nlohmann::json s = run.residence.summary();
+  EXPECT_EQ(s["retained_near_junctions_grains"], 2);
+  EXPECT_EQ(s["retained_along_fibres_grains"], 2);
+  EXPECT_NEAR(s["retained_near_junctions_kg"].get<double>(), 2 * mass, 1e-6 * mass);
+  EXPECT_NEAR(s["retained_along_fibres_kg"].get<double>(), 2 * mass, 1e-6 * mass);
+  std::istringstream rows(run.text_of("retained.csv"));
+  std::string line;
+  std::getline(rows, line);
+  EXPECT_EQ(line, "x_m,y_m,z_m,mass_kg,grains,near_kg,near_grains,along_fibres_kg,along_fibres_grains");
+  double near = 0, rest = 0, all = 0;
+  while (std::getline(rows, line)) {
+    double row[9];
+    std::istringstream cells(line);
+    for (double& x : row) {
+      std::string cell;
+      std::getline(cells, cell, ',');
+      x = std::stod(cell);
+    }
+    all += row[4], near += row[6], rest += row[8];
+    EXPECT_EQ(row[4], row[6] + row[8]);
+    EXPECT_NEAR(row[3], row[5] + row[7], 1e-6 * mass);
+  }
+  EXPECT_EQ(all, 4);
+  EXPECT_EQ(near, 2);
+  EXPECT_EQ(rest, 2);
+}
+
 TEST(Junctions, OfAnOctetLatticeAreItsNodesAndReachEverywhere) {
   const OctetLattice lattice = octet_lattice(0.01, {3, 2, 2}, {-0.005, 0.001, 0.2});
   Solid solid{{"lattice"}, fibre_primitives(lattice, 0.001, {0, 0})};
