@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/junctions.h"
+#include "runtime/residence_pictures.h"
 #include "runtime/results.h"
 
 namespace scree {
@@ -157,6 +158,7 @@ void Residence::finish(const RunView& run) {
   const std::vector<Retained> retained = find_retained(run);
   write_times(run.out / "residence.csv", bins);
   if (!retained.empty()) write_retained(run.out / "retained.csv", retained);
+  write_residence_pictures(run.out / "residence", run.c, bins, retained);
 }
 
 std::vector<Retained> Residence::find_retained(const RunView& run) {

@@ -6,6 +6,7 @@
 //                       cell's edge. Each grain thus has a junction, also on the middle of a fibre; what really lies at
 //                       one is near it: its centre within a fibre's diameter (the thickest that ends there) and its own
 //                       radius. The rest lies along the fibres, or is on its way where the run ends while grains fall.
+//   DIR/residence/      both as pictures (runtime/residence_pictures.h)
 //
 // A grain enters when its centre is first below the layer's top and is out when it is first below its bottom (or has
 // left the run). Only what enters after the first drain stage began is counted as going through: what was filled into
