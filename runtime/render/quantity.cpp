@@ -17,7 +17,6 @@ constexpr Known kKnown[] = {{"velocity", "speed", "m/s"},
                             {"angular_velocity", "angular_velocity", "rad/s"},
                             {"force", "force", "N"},
                             {"torque", "torque", "N m"},
-                            {"coordination_number", "coordination", ""},
                             {"age", "age", "s"},
                             {"contact_stress", "contact_stress", "Pa"},
                             {"stress", "stress", "Pa"},
@@ -25,7 +24,8 @@ constexpr Known kKnown[] = {{"velocity", "speed", "m/s"},
                             {"temperature", "temperature", "K"},
                             {"mass", "mass", "kg"}};
 constexpr const char* kAxes[] = {"x", "y", "z"};
-constexpr double kShown = 0.99;  // of the values are within the colour bar
+constexpr const char* kCounts[] = {"coordination", "wall_contacts"};  // -1: not known
+constexpr double kShown = 0.99;                                       // of the values are within the colour bar
 
 const Known* known_field(const std::string& field) {
   const auto found = std::ranges::find_if(kKnown, [&](const Known& k) { return field == k.field; });
@@ -90,19 +90,28 @@ std::vector<std::string> quantities_of(const ParticleFrame& frame) {
   return names;
 }
 
+const ParticleField* field_of(const ParticleFrame& frame, const std::string& quantity) {
+  for (const ParticleField& field : frame.fields)
+    for (const auto& [name, component] : quantities_of(field))
+      if (name == quantity) return &field;
+  return nullptr;
+}
+
 std::vector<double> values_of(const ParticleFrame& frame, const std::string& quantity) {
   std::vector<double> values(frame.count());
   if (quantity == "diameter") {
     for (size_t k = 0; k < values.size(); ++k) values[k] = 2 * frame.radii[k];
     return values;
   }
-  for (const ParticleField& field : frame.fields)
-    for (const auto& [name, component] : quantities_of(field)) {
-      if (name != quantity) continue;
-      for (size_t k = 0; k < values.size(); ++k) values[k] = value_of(field, k, component);
-      return values;
-    }
-  fail_unknown_name("quantity", quantity, quantities_of(frame));
+  const ParticleField* field = field_of(frame, quantity);
+  if (!field) fail_unknown_name("quantity", quantity, quantities_of(frame));
+  for (const auto& [name, component] : quantities_of(*field))
+    if (name == quantity)
+      for (size_t k = 0; k < values.size(); ++k) values[k] = value_of(*field, k, component);
+  if (std::ranges::find(kCounts, field->name) != std::end(kCounts))
+    std::ranges::replace_if(
+        values, [](double v) { return v < 0; }, std::nan(""));
+  return values;
 }
 
 ColourScale colour_scale(const Case& c, const std::string& quantity, std::vector<double> values,

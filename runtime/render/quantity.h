@@ -14,8 +14,11 @@ namespace scree {
 // vectors as force_x.
 std::vector<std::string> quantities_of(const ParticleFrame& frame);
 
-// One value for each particle, SI. A vector's is its length. Throws std::invalid_argument for an unknown name, listing
-// the known.
+// The field that a quantity is of; null for a diameter and an unknown name.
+const ParticleField* field_of(const ParticleFrame& frame, const std::string& quantity);
+
+// One value for each particle, SI; not a number where it is not known. A vector's is its length. Throws
+// std::invalid_argument for an unknown name, listing the known.
 std::vector<double> values_of(const ParticleFrame& frame, const std::string& quantity);
 
 // The colours for these values: from zero to a round number that one value in a hundred exceeds, symmetric about zero

@@ -8,6 +8,7 @@
 #include "runtime/render/command.h"
 #include "runtime/render/image.h"
 #include "runtime/render/particle_frame.h"
+#include "runtime/render/run_pictures.h"
 #include "runtime/run_folder.h"
 #include "tests/cases/every_stage.h"
 
@@ -188,6 +189,23 @@ TEST_F(Render, ARunDrawsItselfAtItsMomentsAndEndsInTheSameBits) {
   }
   EXPECT_EQ(pictures, 6u);  // at 0.002 s, and at the ends of stages, two of which end at once twice
   EXPECT_GE(read_summary(out)["picture_look"]["pictures"].get<size_t>(), pictures);
+}
+
+TEST_F(Render, ARunDrawsEveryQuantityOfItsFields) {
+  std::string more = "times = [0.02]\n";
+  for (const std::string& quantity : run_quantities())
+    more += "[[output.picture]]\nname = \"" + quantity +
+            "\"\nsize = \"160x90\"\nsamples = 1\ntimes = [0.02]\ncolour = \"" + quantity + "\"\n";
+  const fs::path out = folder_.path() / "run";
+  ASSERT_EQ(run(picturing(more), out).status, RunStatus::done);
+  for (const char* named : {"speed", "coordination", "kind", "age", "wall_contacts", "mass", "diameter"})
+    EXPECT_EQ(read_png(out / "pictures" / (std::string(named) + "_0.020000.png")).width(), 160) << named;
+  try {
+    picturing("colour = \"temperature\"");
+    ADD_FAILURE() << "grains have no temperature";
+  } catch (const CaseError& e) {
+    EXPECT_NE(std::string(e.what()).find("age"), std::string::npos) << e.what();
+  }
 }
 
 TEST_F(Render, ACaseWithAnUnknownCameraOrQuantityIsRefusedWithItsPlace) {
