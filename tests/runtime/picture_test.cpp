@@ -257,6 +257,23 @@ TEST(Quantities, AreReadFromFieldsAndUnknownOnesAreRefused) {
   }
 }
 
+// The six numbers are no vector: their root of squares means nothing.
+TEST(Quantities, OfAStressAreItsPressureAndItsComponents) {
+  ParticleFrame frame;
+  frame.positions = {{0, 0, 0}, {1, 0, 0}}, frame.radii = {0.1f, 0.1f};
+  frame.fields = {{"contact_stress", 6, {30, 60, 90, 1, 2, 3, -9, -6, 3, 4, 5, 6}}};
+  EXPECT_EQ(values_of(frame, "pressure"), (std::vector<double>{60, -4}));
+  EXPECT_EQ(values_of(frame, "contact_stress"), values_of(frame, "pressure"));
+  EXPECT_EQ(values_of(frame, "contact_stress_xx"), (std::vector<double>{30, -9}));
+  EXPECT_EQ(values_of(frame, "contact_stress_zz"), (std::vector<double>{90, 3}));
+  EXPECT_EQ(values_of(frame, "contact_stress_xy"), (std::vector<double>{1, 4}));
+  EXPECT_EQ(values_of(frame, "contact_stress_yz"), (std::vector<double>{2, 5}));
+  EXPECT_EQ(values_of(frame, "contact_stress_xz"), (std::vector<double>{3, 6}));
+  for (const char* name : {"pressure", "contact_stress", "contact_stress_xy"})
+    EXPECT_EQ(colour_scale({}, name, {1, 2}).unit, "Pa") << name;
+  EXPECT_EQ(colour_scale({}, "contact_stress", {1, 2}).quantity, "pressure");
+}
+
 TEST(Cuts, AreReadAndOthersRefused) {
   const Bounds region{{0, 0, 0}, {2, 4, 6}};
   const CutPlane below = parse_cut("y<0.5", region), middle = parse_cut("z>", region),
