@@ -9,6 +9,7 @@
 #include "kernels/parallel.h"
 #include "runtime/average_files.h"
 #include "runtime/average_junctions.h"
+#include "runtime/average_lanes.h"
 #include "tests/oracle/beds.h"
 #include "tests/runtime/case_text.h"
 #include "tests/vtk_reader.h"
@@ -186,6 +187,41 @@ TEST(Averages, SeeWhatLiesAboveAndBelowJunctions) {
   EXPECT_EQ(j["below"]["solid_fraction"].get<double>(), 0);
   EXPECT_NEAR(j["above"]["downward_velocity_m_per_s"].get<double>(), 0.25, 1e-6);
   EXPECT_TRUE(j["below"]["speed_m_per_s"].is_null());
+}
+
+// A made-up field: flux 1 downwards everywhere, 3 in a lane that swings to and fro in x, a fibre in a corner.
+TEST(Lanes, AreWhereTheFluxIsLargestAndAsMuchAboveTheMean) {
+  CoarseGrid g;
+  g.origin = {-1e-3, -2e-3, 0}, g.spacing = {1e-4, 1e-4, 1e-4}, g.cells = {20, 40, 30}, g.width = 2e-4;
+  AverageFields f;
+  f.mass_flux.assign(g.size(), {0, 0, -1}), f.free_share.assign(g.size(), 1);
+  const auto cell = [&](int i, int j, int k) { return (size_t(k) * g.cells[1] + j) * g.cells[0] + i; };
+  const auto swing = [](int k) { return 10 + static_cast<int>(std::lround(5 * std::sin(0.4 * k))); };
+  for (int k = 0; k < 28; ++k) {
+    f.mass_flux[cell(swing(k), 25, k)] = {0, 0, -3};
+    for (int i = 0; i < 10; ++i)
+      for (int j = 0; j < 10; ++j) f.mass_flux[cell(i, j, k)] = {0, 0, 0}, f.free_share[cell(i, j, k)] = 0;
+  }
+  for (size_t at = cell(0, 0, 28); at < cell(0, 0, 29); ++at) f.mass_flux[at] = {0, 0, 0.5};  // upwards: no lane
+  for (size_t at = cell(0, 0, 29); at < g.size(); ++at) f.mass_flux[at] = {0, 0, 0};
+  const std::vector<Lane> lanes = lanes_of(g, f, 0, 1);
+  ASSERT_EQ(lanes.size(), 28u);
+  for (int k = 0; k < 28; ++k) {
+    EXPECT_NEAR(lanes[k].z, (k + 0.5) * 1e-4, 1e-12);
+    EXPECT_NEAR(lanes[k].peak_over_mean, 3 * 700.0 / 702, 1e-9);  // of the free cells
+    EXPECT_NEAR(lanes[k].x, -1e-3 + (swing(k) + 0.5) * 1e-4, 1e-12);
+    EXPECT_NEAR(lanes[k].y, 0.55e-3, 1e-12);
+    EXPECT_NEAR(lanes[k].from_axis, std::hypot(lanes[k].x, 0.55e-3), 1e-12);
+  }
+  Case c = open_case();
+  const nlohmann::json all = lane_summary(c, g, f);
+  EXPECT_EQ(all["layers"]["z_m"].size(), 28u);
+  EXPECT_NEAR(all["distance_from_axis_m"]["most"].get<double>(), 0.78e-3, 0.02e-3);
+  EXPECT_NEAR(all["peak_over_mean"]["mean"].get<double>(), 3, 0.01);
+  c.fibres.count = 1, c.fibres.section = {{-1e-3, -2e-3, 1e-3}, {1e-3, 2e-3, 2e-3}};
+  EXPECT_EQ(lane_summary(c, g, f)["layers"]["z_m"].size(), 10u);  // within the lattice
+  f.mass_flux.assign(g.size(), {0, 0, 0});
+  EXPECT_TRUE(lane_summary(c, g, f).is_null());
 }
 
 TEST(Averages, AreReadByVtkAsTheyAre) {
