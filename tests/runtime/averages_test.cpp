@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "geometry/bounds.h"
+#include "geometry/closest_point.h"
 #include "kernels/parallel.h"
 #include "runtime/average_files.h"
 #include "runtime/average_junctions.h"
@@ -187,6 +188,41 @@ TEST(Averages, SeeWhatLiesAboveAndBelowJunctions) {
   EXPECT_EQ(j["below"]["solid_fraction"].get<double>(), 0);
   EXPECT_NEAR(j["above"]["downward_velocity_m_per_s"].get<double>(), 0.25, 1e-6);
   EXPECT_TRUE(j["below"]["speed_m_per_s"].is_null());
+}
+
+// Everywhere the same mixture in what the fibres leave free, twice as fast above the crossing as below: the share of
+// free space is that mixture's, also beside the fibres, and speeds are over the mean of the section.
+TEST(Averages, DivideWhatLiesAtJunctionsByTheFreeSpaceAndTheSpeedOfTheSection) {
+  Case c = open_case();
+  c.gravity = {0, 0, -9.81};
+  const Vec3 at{2e-3, 2.5e-3, 3e-3};
+  c.solid.walls = {"fibres"};
+  for (const Vec3& way : {Vec3{1, 1, 0}, Vec3{-1, 1, 0}, Vec3{1, -1, 0}, Vec3{-1, -1, 0}})
+    c.solid.primitives.push_back({Segment{at, at + 1e-3 * way}, 3e-4, 1, 0});
+  c.fibres.count = 4, c.fibres.section = {{0, 0, 1e-3}, {4e-3, 5e-3, 5e-3}};
+  // Points rather than grains, on a fine grid outside the fibres.
+  const double fine = 1e-4, radius = 1e-5, fraction = sphere_mass(radius, 1) / std::pow(fine, 3);
+  const auto inside = [&](const Vec3& x) {
+    return std::ranges::any_of(c.solid.primitives, [&](const Primitive& p) { return distance(p, x) < 0; });
+  };
+  std::vector<ParticleState> grains;
+  for (double z = 0.5 * fine; z < 6e-3; z += fine)
+    for (double y = 0.5 * fine; y < 5e-3; y += fine)
+      for (double x = 0.5 * fine; x < 4e-3; x += fine)
+        if (!inside({x, y, z})) grains.push_back(grain({x, y, z}, radius, {0, 0, z > at.z ? -0.5 : -0.25}));
+  const AverageSettings a = average_over(kBox, 2e-4, 8e-4);  // a wide kernel sees much of the fibres
+  const auto sums = looked_at(c, a, grains);
+  const nlohmann::json j = junction_summary(c, sums.grid(), sums.fields(c));
+  for (const char* side : {"above", "below"}) {
+    const nlohmann::json& probe = j[side];
+    EXPECT_NEAR(probe["solid_fraction_of_free_space"].get<double>() / fraction, 1, 0.03) << side;
+    EXPECT_LT(probe["solid_fraction"].get<double>(), 0.97 * fraction) << side;
+    EXPECT_GT(probe["solid_fraction"].get<double>(), 0.5 * fraction) << side;
+  }
+  const double mean = j["section_mean_speed_m_per_s"].get<double>();
+  EXPECT_NEAR(mean, 0.375, 0.005);
+  EXPECT_NEAR(j["above"]["speed_over_section_mean"].get<double>(), 0.5 / mean, 0.1);
+  EXPECT_NEAR(j["below"]["speed_over_section_mean"].get<double>(), 0.25 / mean, 0.1);
 }
 
 // A made-up field: flux 1 downwards everywhere, 3 in a lane that swings to and fro in x, a fibre in a corner.
