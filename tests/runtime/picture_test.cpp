@@ -97,6 +97,19 @@ TEST(Picture, ABallBetweenItAndTheLightShadesAnother) {
   EXPECT_LT(after[0], before[0] - 30);
 }
 
+// Two level fibres, one above the other, look the same all along: what differs from pixel to pixel is noise.
+TEST(Picture, AFibreInShadeIsSmoothWithTheFewSamplesOfARun) {
+  Scene scene = scene_of({{{0, 0.055, -0.03}, 0.002}});
+  scene.fibres = {{{{-0.3, 0, 0}, {0.3, 0, 0}}, 0.015}, {{{-0.3, 0, 0.032}, {0.3, 0, 0.032}}, 0.015}};
+  const Image image = render(scene, millimetres(), kSize, 4);
+  for (int y = 60 - 13; y <= 60 + 13; ++y) {
+    double sum = 0, squares = 0;
+    for (int x = 10; x < 150; ++x) sum += image.at(x, y)[1], squares += image.at(x, y)[1] * image.at(x, y)[1];
+    const double mean = sum / 140;
+    EXPECT_LT(std::sqrt(squares / 140 - mean * mean), 4) << "row " << y;
+  }
+}
+
 TEST(Picture, ACutShowsAFlatFaceAndWhatIsBehindIt) {
   Scene scene = scene_of({{{0, 0, 0}, 0.03}, {{0.05, 0.05, 0}, 0.01}});
   scene.balls.push_back({{-0.05, -0.05, 0}, 0.01});
