@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/bounds.h"
 #include "geometry/solid_index.h"
 #include "runtime/case_physics.h"
 #include "runtime/junctions.h"
@@ -14,7 +15,7 @@ namespace {
 constexpr int kPoints = 5;  // of a line
 
 struct Probe {
-  double solid_fraction = 0, speed = 0, downward = 0;
+  double solid_fraction = 0, free = 0, speed = 0, downward = 0;
   int lines = 0, points = 0, moving = 0;
 };
 
@@ -31,6 +32,49 @@ double way_out(const SolidIndex& index, const Case& c, const Vec3& from, const V
   return -1;
 }
 
+double lucy(double q) { return q < 1 ? (1 + 3 * q) * (1 - q) * (1 - q) * (1 - q) : 0; }
+
+// The free share round a cell as the kernel sees it: a grain beside a fibre is spread over its inside, too, and only
+// what is spread alike can be divided by. Beyond the grid there is nothing.
+double free_share_through_kernel(const CoarseGrid& g, const std::vector<double>& free_share, size_t cell) {
+  const int at[] = {static_cast<int>(cell % g.cells[0]), static_cast<int>(cell / g.cells[0] % g.cells[1]),
+                    static_cast<int>(cell / g.cells[0] / g.cells[1])};
+  const double edge[] = {g.spacing.x, g.spacing.y, g.spacing.z};
+  struct Weighed {
+    int index;
+    double weight;
+  };
+  std::vector<Weighed> along[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const int reach = static_cast<int>(g.width / edge[axis]), n = g.cells[axis];
+    for (int k = at[axis] - reach; k <= at[axis] + reach; ++k) {
+      if (!g.wrap[axis] && (k < 0 || k >= n)) continue;
+      along[axis].push_back({((k % n) + n) % n, lucy(std::abs(k - at[axis]) * edge[axis] / g.width)});
+    }
+  }
+  double sum = 0, weights = 0;
+  for (const Weighed& z : along[2])
+    for (const Weighed& y : along[1])
+      for (const Weighed& x : along[0]) {
+        const double w = x.weight * y.weight * z.weight;
+        sum += w * free_share[(size_t(z.index) * g.cells[1] + y.index) * g.cells[0] + x.index], weights += w;
+      }
+  return sum / weights;
+}
+
+// By mass, over the grid's layers that lie in the lattice's section; m/s.
+double mean_speed(const Case& c, const CoarseGrid& grid, const AverageFields& f) {
+  const Bounds& section = c.fibres.section;
+  const bool whole = !(volume_of(section) > 0);
+  double mass = 0, sum = 0;
+  for (size_t k = 0; k < grid.size(); ++k) {
+    const double z = grid.centre(k).z;
+    if (!(f.bulk_density[k] > 0) || (!whole && (z < section.min.z || z > section.max.z))) continue;
+    mass += f.bulk_density[k], sum += f.bulk_density[k] * norm(f.velocity[k]);
+  }
+  return mass > 0 ? sum / mass : 0;
+}
+
 void look_along(const CoarseGrid& grid, const AverageFields& f, const Vec3& start, const Vec3& way, double length,
                 const Vec3& down, Probe& probe) {
   if (!grid.holds(start) || !grid.holds(start + length * way)) return;
@@ -38,17 +82,20 @@ void look_along(const CoarseGrid& grid, const AverageFields& f, const Vec3& star
   for (int k = 0; k < kPoints; ++k) {
     const size_t cell = grid.cell_of(start + (length * (k + 0.5) / kPoints) * way);
     probe.solid_fraction += f.solid_fraction[cell], ++probe.points;
+    probe.free += free_share_through_kernel(grid, f.free_share, cell);
     if (std::isnan(f.velocity[cell].x)) continue;
     probe.speed += norm(f.velocity[cell]), probe.downward += dot(f.velocity[cell], down), ++probe.moving;
   }
 }
 
-nlohmann::json text_of(const Probe& p) {
+nlohmann::json text_of(const Probe& p, double section_speed) {
   if (p.points == 0) return nullptr;
   const auto mean = [&](double sum) { return p.moving > 0 ? nlohmann::json(sum / p.moving) : nlohmann::json(); };
   return {{"lines", p.lines},
           {"solid_fraction", p.solid_fraction / p.points},
+          {"solid_fraction_of_free_space", p.free > 0 ? nlohmann::json(p.solid_fraction / p.free) : nlohmann::json()},
           {"speed_m_per_s", mean(p.speed)},
+          {"speed_over_section_mean", section_speed > 0 ? mean(p.speed / section_speed) : nlohmann::json()},
           {"downward_velocity_m_per_s", mean(p.downward)}};
 }
 
@@ -67,7 +114,11 @@ nlohmann::json junction_summary(const Case& c, const CoarseGrid& grid, const Ave
       const double out = way_out(*index, c, at, way, grain);
       if (out > 0) look_along(grid, fields, at + out * way, way, 2 * grain, down, dot(way, down) < 0 ? above : below);
     }
-  return {{"count", junctions.size()}, {"above", text_of(above)}, {"below", text_of(below)}};
+  const double section_speed = mean_speed(c, grid, fields);
+  return {{"count", junctions.size()},
+          {"section_mean_speed_m_per_s", section_speed},
+          {"above", text_of(above, section_speed)},
+          {"below", text_of(below, section_speed)}};
 }
 
 }  // namespace scree

@@ -4,6 +4,7 @@
 
 #include "runtime/average_files.h"
 #include "runtime/average_junctions.h"
+#include "runtime/average_lanes.h"
 #include "runtime/during.h"
 #include "runtime/timer.h"
 
@@ -57,6 +58,7 @@ void Averages::finish(const RunView& run) {
   summary_["kernel"] = {{"name", "Lucy along each axis"}, {"half_width_m", grid.width}};
   if (const nlohmann::json junctions = junction_summary(run.c, grid, fields); !junctions.is_null())
     summary_["junctions"] = junctions;
+  if (const nlohmann::json lanes = lane_summary(run.c, grid, fields); !lanes.is_null()) summary_["lanes"] = lanes;
   write_average(run.out / "averages", settings_.name, run.c, grid, fields);
 }
 

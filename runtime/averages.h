@@ -1,5 +1,5 @@
 // Fields on a grid, averaged over time, by coarse-graining: DIR/averages/NAME.vtkhdf, pictures of slices, and what they
-// say about junctions.
+// say about junctions (runtime/average_junctions.h) and lanes (runtime/average_lanes.h).
 //
 // With w the kernel (kernels/coarse_grain.h) divided by a cell's volume, < > the mean over the looks, and v relative to
 // nothing:

@@ -17,6 +17,7 @@ class Junctions {
 
   const std::vector<Vec3>& points() const { return points_; }  // in the order of the fibres
   double reach() const { return reach_; }                      // m; 0 without fibres
+  double diameter(size_t k) const { return diameters_[k]; }    // m, of the thickest fibre that ends at point k
   std::optional<size_t> nearest(const Vec3& x) const;          // within reach()
 
  private:
@@ -34,6 +35,7 @@ class Junctions {
 
   double reach_ = 0;
   std::vector<Vec3> points_;
+  std::vector<double> diameters_;                              // of each
   std::unordered_map<Cell, std::vector<size_t>, Hash> cells_;  // of edge reach_
 };
 

@@ -59,45 +59,50 @@ struct Source {
 
 struct Field {
   const char* name;
-  bool from_contacts;
+  int components;
+  bool from_contacts, in_files;
   Column (*make)(const Source&, const char* name);
 };
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 const std::array kFields = {
-    Field{"velocity", false,
+    Field{"velocity", 3, false, true,
           [](const Source& s, const char* name) {
             return s.vector(name, [&](size_t k) { return s.particles[k].velocity; });
           }},
-    Field{"angular_velocity", false,
+    Field{"angular_velocity", 3, false, true,
           [](const Source& s, const char* name) {
             return s.vector(name, [&](size_t k) { return s.particles[k].spin; });
           }},
-    Field{"force", true,
+    Field{"force", 3, true, true,
           [](const Source& s, const char* name) {
             return s.vector(name, [&](size_t k) {
               return s.contacts_known ? s.sums.force[k] : Vec3{kUnknown, kUnknown, kUnknown};
             });
           }},
-    Field{"coordination", true,
+    Field{"coordination", 1, true, true,
           [](const Source& s, const char* name) {
             return s.count(name, [&](size_t k) { return s.sums.coordination[k]; });
           }},
-    Field{"wall_contacts", true,
+    Field{"wall_contacts", 1, true, true,
           [](const Source& s, const char* name) {
             return s.count(name, [&](size_t k) { return s.sums.wall_contacts[k]; });
           }},
-    Field{"contact_stress", true,
+    Field{"contact_stress", 6, true, true,
           [](const Source& s, const char* name) {
             return column<float>(name, 6, s.particles.size(), [&](size_t k, uint64_t i) {
               return s.contacts_known ? s.sums.stress[k][i] : kUnknown;
             });
           }},
-    Field{"age", false,
+    Field{"age", 1, false, true,
           [](const Source& s, const char* name) {
             return column<float>(name, 0, s.particles.size(),
                                  [&](size_t k, uint64_t) { return s.age(s.particles[k].id); });
+          }},
+    Field{"mass", 1, false, false,
+          [](const Source& s, const char* name) {
+            return column<float>(name, 0, s.particles.size(), [&](size_t k, uint64_t) { return s.particles[k].mass; });
           }},
 };
 
@@ -114,8 +119,16 @@ Column points(const Case& c, const std::vector<ParticleState>& particles) {
 
 std::vector<std::string> particle_field_names() {
   std::vector<std::string> names;
-  for (const Field& field : kFields) names.push_back(field.name);
+  for (const Field& field : kFields)
+    if (field.in_files) names.push_back(field.name);
   return names;
+}
+
+std::vector<ParticleFieldForm> particle_field_forms() {
+  std::vector<ParticleFieldForm> forms;
+  for (const Field& field : kFields) forms.push_back({field.name, field.components});
+  forms.push_back({"kind", 1});
+  return forms;
 }
 
 ParticleSnapshot::ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& fields) {

@@ -14,6 +14,13 @@ namespace scree {
 // wall_contacts, contact_stress, age.
 std::vector<std::string> particle_field_names();
 
+// What a snapshot can hold, in the same order: those, mass (kg; files leave it out: radius and kind tell it) and kind.
+struct ParticleFieldForm {
+  std::string name;
+  int components;
+};
+std::vector<ParticleFieldForm> particle_field_forms();
+
 // A copy of a moment, as it will be written by another thread. SI units, numbers of single precision, in the engine's
 // order of storage:
 //   Points             m; double where single precision would move a particle by more than 1e-4 of its radius

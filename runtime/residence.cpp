@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/junctions.h"
+#include "runtime/residence_pictures.h"
 #include "runtime/results.h"
 
 namespace scree {
@@ -21,6 +22,23 @@ double round_width(double least) {
   for (const double factor : {1.0, 2.0, 5.0})
     if (factor * decade >= least * (1 - 1e-9)) return factor * decade;
   return 10 * decade;
+}
+
+}  // namespace
+
+namespace {
+
+void write_times(const std::filesystem::path& path, const std::vector<ResidenceBin>& bins) {
+  CsvWriter csv(path, {"from_s", "to_s", "mass_kg"});
+  for (const ResidenceBin& bin : bins) csv.row(std::array{bin.from, bin.to, bin.mass});
+}
+
+void write_retained(const std::filesystem::path& path, const std::vector<Retained>& retained) {
+  CsvWriter csv(path, {"x_m", "y_m", "z_m", "mass_kg", "grains", "near_kg", "near_grains", "along_fibres_kg",
+                       "along_fibres_grains"});
+  for (const Retained& r : retained)
+    csv.row(std::array{r.at.x, r.at.y, r.at.z, r.mass, r.grains, r.near_mass, r.near_grains, r.mass_along_fibres(),
+                       r.grains_along_fibres()});
 }
 
 }  // namespace
@@ -136,32 +154,32 @@ void Residence::finish(const RunView& run) {
               {"p10_s", seconds([&] { return times.quantile(0.1); })},
               {"median_s", seconds([&] { return times.quantile(0.5); })},
               {"p90_s", seconds([&] { return times.quantile(0.9); })}};
-  CsvWriter csv(run.out / "residence.csv", {"from_s", "to_s", "mass_kg"});
-  for (const ResidenceBin& bin : bins_of(times, settings_.bin, settings_.interval))
-    csv.row(std::array{bin.from, bin.to, bin.mass});
-  write_retained(run);
+  const std::vector<ResidenceBin> bins = bins_of(times, settings_.bin, settings_.interval);
+  const std::vector<Retained> retained = find_retained(run);
+  write_times(run.out / "residence.csv", bins);
+  if (!retained.empty()) write_retained(run.out / "retained.csv", retained);
+  write_residence_pictures(run.out / "residence", run.c, bins, retained);
 }
 
-void Residence::write_retained(const RunView& run) {
-  struct Left {
-    double mass = 0, grains = 0;
-  };
+std::vector<Retained> Residence::find_retained(const RunView& run) {
   const Junctions junctions(run.solid);
-  std::vector<Left> at(junctions.points().size());
-  Left all, elsewhere;
+  std::vector<Retained> at;
+  for (const Vec3& point : junctions.points()) at.push_back({.at = point});
+  Retained all, elsewhere;
   for (const ParticleState& p : run.engine.particles()) {
     if (p.position.z > settings_.entry || p.position.z < settings_.exit) continue;
     const auto junction = junctions.nearest(p.position);
-    for (Left* left : {&all, junction ? &at[*junction] : &elsewhere}) left->mass += p.mass, ++left->grains;
+    for (Retained* left : {&all, junction ? &at[*junction] : &elsewhere}) left->mass += p.mass, ++left->grains;
+    if (!junction || norm(p.position - at[*junction].at) > junctions.diameter(*junction) + p.radius) continue;
+    for (Retained* left : {&all, &at[*junction]}) left->near_mass += p.mass, ++left->near_grains;
   }
   summary_["retained_kg"] = all.mass, summary_["retained_grains"] = static_cast<uint64_t>(all.grains);
+  summary_["retained_near_junctions_kg"] = all.near_mass;
+  summary_["retained_near_junctions_grains"] = static_cast<uint64_t>(all.near_grains);
+  summary_["retained_along_fibres_kg"] = all.mass_along_fibres() - elsewhere.mass;
+  summary_["retained_along_fibres_grains"] = static_cast<uint64_t>(all.grains_along_fibres() - elsewhere.grains);
   summary_["retained_at_no_junction_kg"] = elsewhere.mass;
-  if (at.empty()) return;
-  CsvWriter csv(run.out / "retained.csv", {"x_m", "y_m", "z_m", "mass_kg", "grains"});
-  for (size_t k = 0; k < at.size(); ++k) {
-    const Vec3& x = junctions.points()[k];
-    csv.row(std::array{x.x, x.y, x.z, at[k].mass, at[k].grains});
-  }
+  return at;
 }
 
 void Residence::save(StateWriter& out, const std::string& at) const {

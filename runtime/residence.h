@@ -1,8 +1,12 @@
 // How long grains stay in a layer (a lattice's cells, between two heights), and where they are left in it.
 //
 //   DIR/residence.csv   from_s, to_s, mass_kg: the mass of those that went through, by the time that it took
-//   DIR/retained.csv    x_m, y_m, z_m, mass_kg, grains: what is left in the layer at the run's end, by the nearest
-//                       junction of fibres within half a cell's edge
+//   DIR/retained.csv    x_m, y_m, z_m, mass_kg, grains, near_kg, near_grains, along_fibres_kg, along_fibres_grains:
+//                       what is left in the layer at the run's end, by the nearest junction of fibres within half a
+//                       cell's edge. Each grain thus has a junction, also on the middle of a fibre; what really lies at
+//                       one is near it: its centre within a fibre's diameter (the thickest that ends there) and its own
+//                       radius. The rest lies along the fibres, or is on its way where the run ends while grains fall.
+//   DIR/residence/      both as pictures (runtime/residence_pictures.h)
 //
 // A grain enters when its centre is first below the layer's top and is out when it is first below its bottom (or has
 // left the run). Only what enters after the first drain stage began is counted as going through: what was filled into
@@ -30,6 +34,15 @@ struct ResidenceBin {
 };
 // Bins from 0 on, as wide as `width`; 0: 1, 2 or 5 times a power of ten, at least `finest`, about 50 of them.
 std::vector<ResidenceBin> bins_of(const ResidenceTimes& times, double width, double finest);
+
+// What is left at a junction.
+struct Retained {
+  Vec3 at{};
+  double mass = 0, grains = 0;            // kg
+  double near_mass = 0, near_grains = 0;  // of these, near it
+  double mass_along_fibres() const { return mass - near_mass; }
+  double grains_along_fibres() const { return grains - near_grains; }
+};
 
 class Residence final : public Observer {
  public:
@@ -60,7 +73,7 @@ class Residence final : public Observer {
   void see(Track& track, const ParticleState& p, double time);
   float crossing(const Track& track, double height, double plane, double time) const;
   bool counts(const RunView& run) const;
-  void write_retained(const RunView& run);
+  std::vector<Retained> find_retained(const RunView& run);  // puts the sums into the summary
 
   ResidenceSettings settings_;
   Schedule schedule_;

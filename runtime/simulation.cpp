@@ -219,7 +219,8 @@ RunResult run_case(const Case& c, const RunOptions& options) {
   if (!simulation) return result;
   try {
     result.steady = simulation->steady();
-    simulation->finish_observers();
+    if (const std::string why = simulation->finish_observers(); !why.empty())
+      fail(result.message.empty() ? why : result.message + "; and " + why);
     if (options.engine.profile) {
       const EngineCounters& k = simulation->engine().counters();
       result.profile = profile_table(profile_of(k, thread_count(), simulation->wall_seconds()), k.particle_steps);

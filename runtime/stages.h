@@ -109,10 +109,19 @@ class Simulation {
     wall_before_ = state_.wall_seconds;
   }
 
-  // Whatever the end: what the observers have becomes complete.
-  void finish_observers() {
-    if (state_.records.empty()) return;
-    for (const auto& o : observers_) o->finish(view());
+  // Whatever the end: what the observers have becomes complete. What could not be written, in words; one that fails
+  // keeps none of the others from writing theirs.
+  std::string finish_observers() {
+    std::string failed;
+    for (const auto& o : observers_) {
+      if (state_.records.empty()) break;
+      try {
+        o->finish(view());
+      } catch (const RunError& e) {
+        failed += (failed.empty() ? "" : "; and ") + std::string(e.what());
+      }
+    }
+    return failed;
   }
 
   const Engine& engine() const { return *engine_; }

@@ -23,8 +23,11 @@ struct Quantity {
 const Quantity kQuantities[] = {
     {"touched_share", "share of the time that it is touched", "%",
      [](const TouchMeans& m) { return 100 * m.touched_share(); }},
-    {"normal_force", "normal force of the grains on the surface", "Pa",
-     [](const TouchMeans& m) { return m.pressure(); }},
+    {"contacts", "grains that touch it at a time", "1/mm²",
+     [](const TouchMeans& m) { return 1e-6 * m.contact_density(); }},
+    {"mean_normal_force", "normal force of a grain on it, mean over contacts", "µN",
+     [](const TouchMeans& m) { return 1e6 * m.mean_force(); }},
+    {"pressure", "pressure of the grains on the surface", "Pa", [](const TouchMeans& m) { return m.pressure(); }},
     {"sliding_work", "work of grains that slide on the surface", "W/m²",
      [](const TouchMeans& m) { return m.rubbing_per_area(); }},
 };

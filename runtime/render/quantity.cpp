@@ -17,7 +17,6 @@ constexpr Known kKnown[] = {{"velocity", "speed", "m/s"},
                             {"angular_velocity", "angular_velocity", "rad/s"},
                             {"force", "force", "N"},
                             {"torque", "torque", "N m"},
-                            {"coordination_number", "coordination", ""},
                             {"age", "age", "s"},
                             {"contact_stress", "contact_stress", "Pa"},
                             {"stress", "stress", "Pa"},
@@ -25,7 +24,10 @@ constexpr Known kKnown[] = {{"velocity", "speed", "m/s"},
                             {"temperature", "temperature", "K"},
                             {"mass", "mass", "kg"}};
 constexpr const char* kAxes[] = {"x", "y", "z"};
-constexpr double kShown = 0.99;  // of the values are within the colour bar
+constexpr const char* kPairsOfAxes[] = {"xx", "yy", "zz", "xy", "yz", "xz"};  // as files have them
+constexpr const char* kPressure = "pressure";
+constexpr const char* kCounts[] = {"coordination", "wall_contacts"};  // -1: not known
+constexpr double kShown = 0.99;                                       // of the values are within the colour bar
 
 const Known* known_field(const std::string& field) {
   const auto found = std::ranges::find_if(kKnown, [&](const Known& k) { return field == k.field; });
@@ -43,9 +45,14 @@ std::string unit_of(const std::string& quantity) {
   return "";
 }
 
-// The quantities of a field with how to get them: -1 the length or the value itself, else the component.
+// The quantities of a field with how to get them: -1 the length, a tensor's trace / 3 or the value itself, else the
+// component. A tensor's own name is another for its pressure.
 std::vector<std::pair<std::string, int>> quantities_of(const ParticleField& field) {
   std::vector<std::pair<std::string, int>> names{{quantity_name(field.name), -1}};
+  if (field.components == 6) {
+    names.emplace_back(kPressure, -1);
+    for (int k = 0; k < 6; ++k) names.emplace_back(field.name + "_" + kPairsOfAxes[k], k);
+  }
   if (field.components == 3)
     for (int axis = 0; axis < 3; ++axis) names.push_back({field.name + "_" + kAxes[axis], axis});
   return names;
@@ -55,6 +62,7 @@ double value_of(const ParticleField& field, size_t k, int component) {
   const float* v = &field.values[k * field.components];
   if (component >= 0) return v[component];
   if (field.components == 1) return v[0];
+  if (field.components == 6) return (double(v[0]) + v[1] + v[2]) / 3;  // compression is positive
   double sum = 0;
   for (int c = 0; c < field.components; ++c) sum += double(v[c]) * v[c];
   return std::sqrt(sum);
@@ -90,25 +98,34 @@ std::vector<std::string> quantities_of(const ParticleFrame& frame) {
   return names;
 }
 
+const ParticleField* field_of(const ParticleFrame& frame, const std::string& quantity) {
+  for (const ParticleField& field : frame.fields)
+    for (const auto& [name, component] : quantities_of(field))
+      if (name == quantity) return &field;
+  return nullptr;
+}
+
 std::vector<double> values_of(const ParticleFrame& frame, const std::string& quantity) {
   std::vector<double> values(frame.count());
   if (quantity == "diameter") {
     for (size_t k = 0; k < values.size(); ++k) values[k] = 2 * frame.radii[k];
     return values;
   }
-  for (const ParticleField& field : frame.fields)
-    for (const auto& [name, component] : quantities_of(field)) {
-      if (name != quantity) continue;
-      for (size_t k = 0; k < values.size(); ++k) values[k] = value_of(field, k, component);
-      return values;
-    }
-  fail_unknown_name("quantity", quantity, quantities_of(frame));
+  const ParticleField* field = field_of(frame, quantity);
+  if (!field) fail_unknown_name("quantity", quantity, quantities_of(frame));
+  for (const auto& [name, component] : quantities_of(*field))
+    if (name == quantity)
+      for (size_t k = 0; k < values.size(); ++k) values[k] = value_of(*field, k, component);
+  if (std::ranges::find(kCounts, field->name) != std::end(kCounts))
+    std::ranges::replace_if(
+        values, [](double v) { return v < 0; }, std::nan(""));
+  return values;
 }
 
 ColourScale colour_scale(const Case& c, const std::string& quantity, std::vector<double> values,
                          const std::optional<ValueRange>& given) {
   ColourScale scale;
-  scale.quantity = quantity, scale.unit = unit_of(quantity);
+  scale.quantity = quantity == "contact_stress" ? kPressure : quantity, scale.unit = unit_of(quantity);
   std::ranges::replace(scale.quantity, '_', ' ');
   if (quantity == "kind") {
     scale.categories = names_of(c.kinds);

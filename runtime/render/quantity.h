@@ -10,12 +10,16 @@
 
 namespace scree {
 
-// Every name that values_of() knows for this frame: speed, coordination, kind, age, force, ..., and components of
-// vectors as force_x.
+// Every name that values_of() knows for this frame: speed, coordination, kind, age, force, ..., components of vectors
+// as force_x; of a stress its pressure (trace / 3, positive where it presses together: the sign of the files) and its
+// components as contact_stress_xy.
 std::vector<std::string> quantities_of(const ParticleFrame& frame);
 
-// One value for each particle, SI. A vector's is its length. Throws std::invalid_argument for an unknown name, listing
-// the known.
+// The field that a quantity is of; null for a diameter and an unknown name.
+const ParticleField* field_of(const ParticleFrame& frame, const std::string& quantity);
+
+// One value for each particle, SI: a vector's length, a stress's pressure; not a number where it is not known. Throws
+// std::invalid_argument for an unknown name, listing the known.
 std::vector<double> values_of(const ParticleFrame& frame, const std::string& quantity);
 
 // The colours for these values: from zero to a round number that one value in a hundred exceeds, symmetric about zero

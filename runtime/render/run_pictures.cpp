@@ -1,9 +1,11 @@
 #include "runtime/render/run_pictures.h"
 
 #include <chrono>
+#include <cstring>
 
 #include "runtime/case_moments.h"
 #include "runtime/case_sections.h"
+#include "runtime/particle_fields.h"
 #include "runtime/render/case_scene.h"
 #include "runtime/render/picture.h"
 
@@ -14,33 +16,27 @@ namespace {
 // Unless the case says otherwise: a run should not wait for its pictures.
 constexpr const char* kRunSize = "960x540";
 constexpr int kRunSamples = 4;
-constexpr const char* kFromContacts[] = {"coordination", "force", "force_x", "force_y", "force_z"};
 
-// What touches each particle, and the sum of the forces on it.
-void add_contact_fields(ParticleFrame& frame, std::span<const ContactState> contacts) {
-  ParticleField coordination{"coordination_number", 1, std::vector<float>(frame.count())};
-  std::vector<Vec3> forces(frame.count());
-  for (const ContactState& c : contacts) {
-    coordination.values[c.i] += 1, forces[c.i] += c.force;
-    if (!c.with_solid) coordination.values[c.j] += 1, forces[c.j] -= c.force;
-  }
-  ParticleField force{"force", 3, {}};
-  for (const Vec3& f : forces)
-    for (const double x : {f.x, f.y, f.z}) force.values.push_back(static_cast<float>(x));
-  frame.fields.push_back(std::move(coordination)), frame.fields.push_back(std::move(force));
-}
-
-ParticleFrame frame_now(const Engine& engine, const std::string& quantity) {
-  ParticleFrame frame = frame_of(engine.particles(), engine.time());
-  if (std::ranges::find(kFromContacts, quantity) != std::end(kFromContacts))
-    add_contact_fields(frame, engine.contacts());
+// A frame of no particles with every field that a run has.
+ParticleFrame empty_frame() {
+  ParticleFrame frame;
+  for (const ParticleFieldForm& form : particle_field_forms()) frame.fields.push_back({form.name, form.components, {}});
   return frame;
 }
 
-std::vector<std::string> run_quantities() {
-  ParticleFrame none = frame_of({}, 0);
-  add_contact_fields(none, {});
-  return quantities_of(none);
+template <class To>
+std::vector<To> values_in(const ParticleSnapshot::Column& column) {
+  const auto read = [&]<class T>(T) {
+    std::vector<To> values;
+    for (size_t at = 0; at < column.values.size(); at += sizeof(T)) {
+      T value;
+      std::memcpy(&value, &column.values[at], sizeof(T));
+      values.push_back(static_cast<To>(value));
+    }
+    return values;
+  };
+  if (column.type.kind == ElementType::Kind::real) return column.type.size == 8 ? read(double{}) : read(float{});
+  return column.type.size == 1 ? read(uint8_t{}) : column.type.size == 2 ? read(int16_t{}) : read(uint32_t{});
 }
 
 std::string one_of_names(TableReader& t, const char* key, const std::string& what, const char* fallback,
@@ -115,7 +111,7 @@ class PictureObserver final : public Observer {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw RunError(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
-    const ParticleFrame frame = frame_now(run.engine, picture_.request.colour);
+    const ParticleFrame frame = frame_now(run.c, run.engine, picture_.request.colour);
     write_png(folder / fmt::format("{}_{:.6f}.png", picture_.name, run.engine.time()),
               draw_picture(run.c, frame, picture_.request, run.solid));
     ++drawn_;
@@ -132,6 +128,30 @@ class PictureObserver final : public Observer {
 };
 
 }  // namespace
+
+std::vector<std::string> run_quantities() { return quantities_of(empty_frame()); }
+
+ParticleFrame frame_now(const Case& c, const Engine& engine, const std::string& quantity) {
+  const ParticleFrame known = empty_frame();
+  std::vector<std::string> fields;
+  if (const ParticleField* field = field_of(known, quantity)) fields.push_back(field->name);
+  const ParticleSnapshot snapshot(c, engine, fields);
+  ParticleFrame frame;
+  frame.time = engine.time();
+  for (const ParticleSnapshot::Column& column : snapshot.columns()) {
+    if (column.name == "id") continue;
+    if (column.name == "Points") {
+      const std::vector<double> x = values_in<double>(column);
+      for (size_t k = 0; k < x.size(); k += 3) frame.positions.push_back({x[k], x[k + 1], x[k + 2]});
+    } else if (column.name == "radius") {
+      frame.radii = values_in<float>(column);
+    } else {
+      const int components = static_cast<int>(std::max<uint64_t>(column.components, 1));
+      frame.fields.push_back({column.name, components, values_in<float>(column)});
+    }
+  }
+  return frame;
+}
 
 void read_pictures(TableReader& output, std::vector<RunPicture>& pictures) {
   for (TableReader& t : output.tables("picture")) pictures.push_back(read_picture(t, pictures));

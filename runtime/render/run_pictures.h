@@ -3,6 +3,7 @@
 
 #include "runtime/case_table.h"
 #include "runtime/observer.h"
+#include "runtime/render/particle_frame.h"
 
 namespace scree {
 
@@ -10,6 +11,11 @@ namespace scree {
 // camera or a junction needs, and its moments (runtime/case_moments.h). Names of cameras and quantities are checked
 // here.
 void read_pictures(TableReader& output, std::vector<RunPicture>& pictures);
+
+// What `colour` may name: quantities of the fields that field files can have (runtime/particle_fields.h), and of mass.
+std::vector<std::string> run_quantities();
+// The particles as they are, with the field that the quantity is of.
+ParticleFrame frame_now(const Case& c, const Engine& engine, const std::string& quantity);
 
 // Draws it at its moments. Throws CaseError for a junction camera in a case without one; a file that cannot be written
 // is a RunError of look().

@@ -13,6 +13,10 @@ constexpr float kKey = 0.60f, kAmbient = 0.68f;
 constexpr float kBounced = 0.2f;       // of the ambient light, where it is kept out: other surfaces send it on
 constexpr float kLightSpread = 0.16f;  // radius of the key light as seen from the scene, rad: the softness of shadows
 constexpr float kGround = 0.55f;       // light from below, of that from above
+// To the light and round a fibre's surface, a pixel, at least. Fibres are wide, smooth and light: of as few rays as a
+// run's own pictures have samples, shadow or none of each would be a grain of light and dark pixels on them. Balls are
+// small and have edges enough.
+constexpr int kFibreRays = 32;
 constexpr float kReachInBalls = 6, kReachInFibres = 4;  // kReach, in radii
 constexpr Rgb kMetal{0.47f, 0.48f, 0.50f}, kCutMetal{0.17f, 0.18f, 0.20f};
 constexpr float kMetalShine = 0.35f, kBallShine = 0.04f, kShininess = 30;
@@ -168,6 +172,7 @@ TilePainter::Surface TilePainter::surface_at(const Ray& ray, const BodyId& body,
           -ray.direction,
           ball ? scene_.ball_colours[body.index] : kMetal,
           ball ? kBallShine : kMetalShine,
+          !ball,
           0};
 }
 
@@ -212,30 +217,40 @@ void TilePainter::light(Tile& tile) const {
   const size_t n = tile.surfaces.size();
   std::vector<Ray> to_light, around;
   to_light.reserve(n), around.reserve(n);
+  const auto rays_of = [&](const Surface& s) {
+    return s.is_fibre ? static_cast<uint32_t>((kFibreRays + samples_ - 1) / samples_) : 1u;
+  };
   for (const Surface& s : tile.surfaces) {
+    const uint32_t rays = rays_of(s);
     const uint32_t pixel = s.sample / samples_, sample = s.sample % samples_;
     const uint32_t x = tile.x0 + pixel % tile.columns, y = tile.y0 + pixel / tile.columns;
-    const Pair even = spread(sample, static_cast<uint32_t>(samples_));
-    const Pair disc = on_disc(shifted(even, noise(x, y, 1)));
     const Vec3f start = s.point + start_ * s.normal;
-    Ray ray{start, 0, unit(to_light_ + kLightSpread * (disc.u * light_u_ + disc.v * light_v_))};
-    leave(ray);
-    to_light.push_back(ray);
-    ray = {start, 0, round_normal(s.normal, shifted(even, noise(x, y, 2))), reach_};
-    leave(ray);
-    around.push_back(ray);
+    for (uint32_t r = 0; r < rays; ++r) {
+      const Pair even = spread(sample * rays + r, static_cast<uint32_t>(samples_) * rays);
+      const Pair disc = on_disc(shifted(even, noise(x, y, 1)));
+      Ray ray{start, 0, unit(to_light_ + kLightSpread * (disc.u * light_u_ + disc.v * light_v_))};
+      leave(ray);
+      to_light.push_back(ray);
+      ray = {start, 0, round_normal(s.normal, shifted(even, noise(x, y, 2))), reach_};
+      leave(ray);
+      around.push_back(ray);
+    }
   }
-  std::vector<uint8_t> shadowed(n), covered(n);
+  std::vector<uint8_t> shadowed(to_light.size()), covered(to_light.size());
   solid_->any(to_light, shadowed);
   solid_->any(around, covered);
-  for (size_t k = 0; k < n; ++k) {
-    const Surface& s = tile.surfaces[k];
+  size_t ray = 0;  // the surface's first
+  for (const Surface& s : tile.surfaces) {
+    float lit = 0, open = 0;  // shares of its rays
+    const uint32_t rays = rays_of(s);
+    for (uint32_t r = 0; r < rays; ++r, ++ray) lit += !shadowed[ray], open += !covered[ray];
+    lit /= static_cast<float>(rays), open /= static_cast<float>(rays);
     const float facing = std::max(0.0f, dot(s.normal, to_light_));
-    const float key = shadowed[k] ? 0 : kKey * facing;
+    const float key = lit * kKey * facing;
     const float up = 0.5f + 0.5f * dot(s.normal, sky_);
-    const float ambient = (covered[k] ? kBounced : 1) * kAmbient * (kGround + (1 - kGround) * up);
+    const float ambient = (kBounced + (1 - kBounced) * open) * kAmbient * (kGround + (1 - kGround) * up);
     const float gleam = std::pow(std::max(0.0f, dot(s.normal, unit(to_light_ + s.view))), kShininess);
-    const float shine = shadowed[k] || facing == 0 ? 0 : s.shine * gleam;
+    const float shine = facing == 0 ? 0 : lit * s.shine * gleam;
     tile.colours[s.sample] = (key + ambient) * s.colour + shine * Rgb{1, 1, 1};
   }
 }

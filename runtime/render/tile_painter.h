@@ -27,6 +27,7 @@ class TilePainter {
     Vec3f point, normal, view;
     Rgb colour;
     float shine;
+    bool is_fibre;
     uint32_t sample;
   };
   struct Tile;

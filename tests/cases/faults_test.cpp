@@ -8,6 +8,8 @@
 #include <random>
 #include <set>
 
+#include "runtime/render/image.h"
+
 namespace scree {
 namespace {
 
@@ -167,6 +169,50 @@ TEST_F(Faults, AFullDiskUnderTheFieldFilesStopsTheRunWhichGoesOnLater) {
   }
   EXPECT_GT(files, 100u);
   EXPECT_EQ(std::distance(fs::directory_iterator(disk), fs::directory_iterator()), static_cast<long>(files));
+}
+
+TEST_F(Faults, AFullDiskUnderItsPicturesStopsTheRunWhichGoesOnLater) {
+  const fs::path disk = path("disk");
+  fs::create_directories(disk);
+  if (mount("scree_test", disk.c_str(), "tmpfs", 0, "size=64k") != 0)
+    GTEST_SKIP() << "not tried: a small file system cannot be mounted here";
+  const fs::path picturing = path("picturing.toml"), out = path("out");
+  std::ofstream(picturing) << "base = \"" << case_ << "\"\n[[output.picture]]\nname = \"look\"\nsize = \"320x180\"\n"
+                           << "samples = 1\ninterval = 2e-3\n";
+  fs::create_directories(out);
+  fs::create_directory_symlink(disk, out / "pictures");
+  EXPECT_EQ(execute({"run", picturing.string(), "--out", out.string(), "--resume"}), 3) << said_;
+  EXPECT_NE(said_.find("cannot write " + (out / "pictures" / "look_").string()), std::string::npos) << said_;
+  EXPECT_NE(said_.find("No space left on device"), std::string::npos) << said_;
+  EXPECT_FALSE(checkpoints_in(out).empty());
+  size_t earlier = 0;
+  for (const auto& entry : fs::directory_iterator(disk)) {  // each whole
+    EXPECT_EQ(read_png(entry.path()).width(), 320) << entry.path();
+    ++earlier;
+  }
+  EXPECT_GT(earlier, 0u);
+  EXPECT_EQ(read_summary(out)["status"], "failed");
+  EXPECT_GT(fs::file_size(out / "particles.vtp"), 1000u);
+  EXPECT_EQ(mount("scree_test", disk.c_str(), "tmpfs", MS_REMOUNT, "size=100m"), 0);
+  expect_resumes(out);
+  size_t all = 0;
+  for (const auto& entry : fs::directory_iterator(disk)) all += read_png(entry.path()).width() == 320;
+  EXPECT_GT(all, earlier);
+  EXPECT_EQ(umount(disk.c_str()), 0);
+}
+
+// The page is made of results that are there already: the run is done, and says how to try again.
+TEST_F(Faults, AReportThatCannotBeWrittenIsAWarning) {
+  const fs::path out = path("out");
+  fs::create_directories(out / "report.html" / "in_the_way");
+  EXPECT_EQ(execute(run_command(out, {"--resume"})), 0) << said_;
+  EXPECT_NE(said_.find("scree: warning: no report: "), std::string::npos) << said_;
+  EXPECT_NE(said_.find("`scree report " + out.string() + "` tries again"), std::string::npos) << said_;
+  EXPECT_EQ(said_.find("report in "), std::string::npos) << said_;
+  expect_undisturbed(out);
+  fs::remove_all(out / "report.html");
+  EXPECT_EQ(execute({"report", out.string()}), 0) << said_;
+  EXPECT_TRUE(fs::is_regular_file(out / "report.html"));
 }
 
 TEST_F(Faults, NoPlaceForFieldFilesStopsTheRunWithItsName) {

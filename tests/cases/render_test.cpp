@@ -6,6 +6,7 @@
 #include "runtime/render/command.h"
 #include "runtime/render/image.h"
 #include "runtime/render/particle_frame.h"
+#include "runtime/render/run_pictures.h"
 #include "runtime/run_folder.h"
 #include "tests/cases/every_stage.h"
 #include "tests/cases/small_disk.h"
@@ -46,6 +47,19 @@ class Render : public ::testing::Test {
     RenderArguments a;
     a.folder = finished_run(), a.size = "160x90", a.samples = 1, a.out = (folder_.path() / "pictures").string();
     return a;
+  }
+  // Does something while `ffmpeg` is a shell script of these commands.
+  template <class Do>
+  auto with_ffmpeg(const std::string& commands, const Do& something) {
+    const fs::path programs = folder_.path() / "programs";
+    fs::create_directories(programs);
+    std::ofstream(programs / "ffmpeg") << "#!/bin/sh\n" << commands << "\n";
+    fs::permissions(programs / "ffmpeg", fs::perms::owner_all);
+    const std::string path = getenv("PATH");
+    setenv("PATH", (programs.string() + ":" + path).c_str(), 1);
+    auto result = something();
+    setenv("PATH", path.c_str(), 1);
+    return result;
   }
   // A case that draws pictures of itself; `more` goes into its table.
   Case picturing(const std::string& more) {
@@ -102,6 +116,72 @@ TEST_F(Render, WithoutFfmpegAFilmIsItsPictures) {
   const size_t moments = list_particle_frames(a.folder).size();
   EXPECT_GT(moments, 1u);  // field files at the ends of stages
   EXPECT_EQ(entries_of(fs::path(a.out) / "film_front_speed").size(), moments);
+}
+
+// A stand-in that notes its arguments and writes its last, the film.
+TEST_F(Render, WithFfmpegAFilmIsOneFile) {
+  RenderArguments a = arguments();
+  a.film = true, a.frames_per_second = 12;
+  const std::string noted = (folder_.path() / "arguments").string();
+  const std::vector<fs::path> said = with_ffmpeg(
+      "printf '%s\\n' \"$@\" > " + noted + "; for film; do :; done; echo film > \"$film\"", [&] { return render(a); });
+  const fs::path film = fs::path(a.out) / "film_front_speed.mp4", pictures = fs::path(a.out) / "film_front_speed";
+  EXPECT_EQ(said, (std::vector<fs::path>{film}));
+  EXPECT_EQ(text_of(film), "film\n");
+  const std::string given = "\n" + text_of(noted);
+  for (const std::string& expected :
+       {std::string("-framerate\n12"), "-i\n" + (pictures / "%05d.png").string(), std::string("-c:v\nlibx264"),
+        std::string("-pix_fmt\nyuv420p"), std::string("-y"), std::string("-nostdin")})
+    EXPECT_NE(given.find("\n" + expected + "\n"), std::string::npos) << expected << given;
+  EXPECT_TRUE(given.ends_with("\n" + film.string() + "\n")) << given;
+  // What "%05d.png" names is there, from 0 on.
+  const size_t moments = list_particle_frames(a.folder).size();
+  for (size_t k = 0; k < moments; ++k) EXPECT_TRUE(fs::exists(pictures / fmt::format("{:05}.png", k))) << k;
+}
+
+TEST_F(Render, WhenFfmpegFailsItIsSaidAndThePicturesAreThere) {
+  RenderArguments a = arguments();
+  a.film = true;
+  const std::vector<fs::path> said = with_ffmpeg("exit 7", [&] { return render(a); });
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].string().find("no film: ffmpeg failed with code 7; the pictures are in "), std::string::npos)
+      << said[0];
+  EXPECT_EQ(entries_of(fs::path(a.out) / "film_front_speed").size(), list_particle_frames(a.folder).size());
+  EXPECT_FALSE(fs::exists(fs::path(a.out) / "film_front_speed.mp4"));
+}
+
+// In the middle of the picture is the node, metal, with grains behind it and none before it.
+TEST_F(Render, TheJunctionCameraShowsANodeOfALattice) {
+  const fs::path out = folder_.path() / "lattice";
+  RunOptions options;
+  options.out = out;
+  const Case c = read_case(
+      case_path("examples/averages_and_touch.toml"),
+      {"stage.fill.count=900", "stage.settle.time=0.003", "stage.drain.max_time=0.004", "output.touch.interval=1e-3",
+       "output.average.lattice.spacing=0.5e-3", "output.average.lattice.width=0.8e-3",
+       "output.average.filling.spacing=0.5e-3", "output.average.filling.width=0.8e-3"});
+  ASSERT_EQ(run_case(c, options).status, RunStatus::done);
+  RenderArguments a = arguments();
+  a.folder = out, a.cameras = {"junction"}, a.walls = "hidden", a.size = "320x180", a.samples = 4, a.plain = true;
+  const std::vector<fs::path> files = render(a);
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_TRUE(files[0].filename().string().starts_with("junction_speed")) << files[0];
+  const auto shares = [&](const Image& image, int x0, int y0, int x1, int y1) {  // of metal, of grains
+    double metal = 0, grains = 0;
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        const Srgb p = image.at(x, y);
+        const int spread = std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]});
+        metal += spread < 16 && p[0]<235, grains += spread> 40;
+      }
+    return std::pair{metal / ((x1 - x0) * (y1 - y0)), grains / ((x1 - x0) * (y1 - y0))};
+  };
+  const Image close = read_png(files[0]);
+  EXPECT_GT(shares(close, 155, 85, 165, 95).first, 0.9);
+  EXPECT_GT(shares(close, 0, 0, 320, 180).second, 0.1);
+  a.point = {-2.5e-3, -2.5e-3, 20e-3};  // above everything
+  const Image other = read_png(render(a).at(0));
+  EXPECT_LT(shares(other, 155, 85, 165, 95).first, 0.1);
 }
 
 TEST_F(Render, AFilmOfOneMomentSaysSo) {
@@ -171,6 +251,23 @@ TEST_F(Render, ARunDrawsItselfAtItsMomentsAndEndsInTheSameBits) {
   }
   EXPECT_EQ(pictures, 6u);  // at 0.002 s, and at the ends of stages, two of which end at once twice
   EXPECT_GE(read_summary(out)["picture_look"]["pictures"].get<size_t>(), pictures);
+}
+
+TEST_F(Render, ARunDrawsEveryQuantityOfItsFields) {
+  std::string more = "times = [0.02]\n";
+  for (const std::string& quantity : run_quantities())
+    more += "[[output.picture]]\nname = \"" + quantity +
+            "\"\nsize = \"160x90\"\nsamples = 1\ntimes = [0.02]\ncolour = \"" + quantity + "\"\n";
+  const fs::path out = folder_.path() / "run";
+  ASSERT_EQ(run(picturing(more), out).status, RunStatus::done);
+  for (const char* named : {"speed", "coordination", "kind", "age", "wall_contacts", "mass", "diameter"})
+    EXPECT_EQ(read_png(out / "pictures" / (std::string(named) + "_0.020000.png")).width(), 160) << named;
+  try {
+    picturing("colour = \"temperature\"");
+    ADD_FAILURE() << "grains have no temperature";
+  } catch (const CaseError& e) {
+    EXPECT_NE(std::string(e.what()).find("age"), std::string::npos) << e.what();
+  }
 }
 
 TEST_F(Render, ACaseWithAnUnknownCameraOrQuantityIsRefusedWithItsPlace) {

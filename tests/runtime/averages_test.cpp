@@ -6,9 +6,11 @@
 #include <functional>
 
 #include "geometry/bounds.h"
+#include "geometry/closest_point.h"
 #include "kernels/parallel.h"
 #include "runtime/average_files.h"
 #include "runtime/average_junctions.h"
+#include "runtime/average_lanes.h"
 #include "tests/oracle/beds.h"
 #include "tests/runtime/case_text.h"
 #include "tests/vtk_reader.h"
@@ -186,6 +188,76 @@ TEST(Averages, SeeWhatLiesAboveAndBelowJunctions) {
   EXPECT_EQ(j["below"]["solid_fraction"].get<double>(), 0);
   EXPECT_NEAR(j["above"]["downward_velocity_m_per_s"].get<double>(), 0.25, 1e-6);
   EXPECT_TRUE(j["below"]["speed_m_per_s"].is_null());
+}
+
+// Everywhere the same mixture in what the fibres leave free, twice as fast above the crossing as below: the share of
+// free space is that mixture's, also beside the fibres, and speeds are over the mean of the section.
+TEST(Averages, DivideWhatLiesAtJunctionsByTheFreeSpaceAndTheSpeedOfTheSection) {
+  Case c = open_case();
+  c.gravity = {0, 0, -9.81};
+  const Vec3 at{2e-3, 2.5e-3, 3e-3};
+  c.solid.walls = {"fibres"};
+  for (const Vec3& way : {Vec3{1, 1, 0}, Vec3{-1, 1, 0}, Vec3{1, -1, 0}, Vec3{-1, -1, 0}})
+    c.solid.primitives.push_back({Segment{at, at + 1e-3 * way}, 3e-4, 1, 0});
+  c.fibres.count = 4, c.fibres.section = {{0, 0, 1e-3}, {4e-3, 5e-3, 5e-3}};
+  // Points rather than grains, on a fine grid outside the fibres.
+  const double fine = 1e-4, radius = 1e-5, fraction = sphere_mass(radius, 1) / std::pow(fine, 3);
+  const auto inside = [&](const Vec3& x) {
+    return std::ranges::any_of(c.solid.primitives, [&](const Primitive& p) { return distance(p, x) < 0; });
+  };
+  std::vector<ParticleState> grains;
+  for (double z = 0.5 * fine; z < 6e-3; z += fine)
+    for (double y = 0.5 * fine; y < 5e-3; y += fine)
+      for (double x = 0.5 * fine; x < 4e-3; x += fine)
+        if (!inside({x, y, z})) grains.push_back(grain({x, y, z}, radius, {0, 0, z > at.z ? -0.5 : -0.25}));
+  const AverageSettings a = average_over(kBox, 2e-4, 8e-4);  // a wide kernel sees much of the fibres
+  const auto sums = looked_at(c, a, grains);
+  const nlohmann::json j = junction_summary(c, sums.grid(), sums.fields(c));
+  for (const char* side : {"above", "below"}) {
+    const nlohmann::json& probe = j[side];
+    EXPECT_NEAR(probe["solid_fraction_of_free_space"].get<double>() / fraction, 1, 0.03) << side;
+    EXPECT_LT(probe["solid_fraction"].get<double>(), 0.97 * fraction) << side;
+    EXPECT_GT(probe["solid_fraction"].get<double>(), 0.5 * fraction) << side;
+  }
+  const double mean = j["section_mean_speed_m_per_s"].get<double>();
+  EXPECT_NEAR(mean, 0.375, 0.005);
+  EXPECT_NEAR(j["above"]["speed_over_section_mean"].get<double>(), 0.5 / mean, 0.1);
+  EXPECT_NEAR(j["below"]["speed_over_section_mean"].get<double>(), 0.25 / mean, 0.1);
+}
+
+// A made-up field: flux 1 downwards everywhere, 3 in a lane that swings to and fro in x, a fibre in a corner.
+TEST(Lanes, AreWhereTheFluxIsLargestAndAsMuchAboveTheMean) {
+  CoarseGrid g;
+  g.origin = {-1e-3, -2e-3, 0}, g.spacing = {1e-4, 1e-4, 1e-4}, g.cells = {20, 40, 30}, g.width = 2e-4;
+  AverageFields f;
+  f.mass_flux.assign(g.size(), {0, 0, -1}), f.free_share.assign(g.size(), 1);
+  const auto cell = [&](int i, int j, int k) { return (size_t(k) * g.cells[1] + j) * g.cells[0] + i; };
+  const auto swing = [](int k) { return 10 + static_cast<int>(std::lround(5 * std::sin(0.4 * k))); };
+  for (int k = 0; k < 28; ++k) {
+    f.mass_flux[cell(swing(k), 25, k)] = {0, 0, -3};
+    for (int i = 0; i < 10; ++i)
+      for (int j = 0; j < 10; ++j) f.mass_flux[cell(i, j, k)] = {0, 0, 0}, f.free_share[cell(i, j, k)] = 0;
+  }
+  for (size_t at = cell(0, 0, 28); at < cell(0, 0, 29); ++at) f.mass_flux[at] = {0, 0, 0.5};  // upwards: no lane
+  for (size_t at = cell(0, 0, 29); at < g.size(); ++at) f.mass_flux[at] = {0, 0, 0};
+  const std::vector<Lane> lanes = lanes_of(g, f, 0, 1);
+  ASSERT_EQ(lanes.size(), 28u);
+  for (int k = 0; k < 28; ++k) {
+    EXPECT_NEAR(lanes[k].z, (k + 0.5) * 1e-4, 1e-12);
+    EXPECT_NEAR(lanes[k].peak_over_mean, 3 * 700.0 / 702, 1e-9);  // of the free cells
+    EXPECT_NEAR(lanes[k].x, -1e-3 + (swing(k) + 0.5) * 1e-4, 1e-12);
+    EXPECT_NEAR(lanes[k].y, 0.55e-3, 1e-12);
+    EXPECT_NEAR(lanes[k].from_axis, std::hypot(lanes[k].x, 0.55e-3), 1e-12);
+  }
+  Case c = open_case();
+  const nlohmann::json all = lane_summary(c, g, f);
+  EXPECT_EQ(all["layers"]["z_m"].size(), 28u);
+  EXPECT_NEAR(all["distance_from_axis_m"]["most"].get<double>(), 0.78e-3, 0.02e-3);
+  EXPECT_NEAR(all["peak_over_mean"]["mean"].get<double>(), 3, 0.01);
+  c.fibres.count = 1, c.fibres.section = {{-1e-3, -2e-3, 1e-3}, {1e-3, 2e-3, 2e-3}};
+  EXPECT_EQ(lane_summary(c, g, f)["layers"]["z_m"].size(), 10u);  // within the lattice
+  f.mass_flux.assign(g.size(), {0, 0, 0});
+  EXPECT_TRUE(lane_summary(c, g, f).is_null());
 }
 
 TEST(Averages, AreReadByVtkAsTheyAre) {

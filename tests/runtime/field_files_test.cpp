@@ -12,7 +12,8 @@
 #include "runtime/contact_sums.h"
 #include "runtime/particle_fields.h"
 #include "runtime/random.h"
-#include "runtime/render/particle_frame.h"
+#include "runtime/render/quantity.h"
+#include "runtime/render/run_pictures.h"
 #include "runtime/solid_mesh.h"
 #include "tests/runtime/case_text.h"
 #include "tests/scenes.h"
@@ -291,6 +292,37 @@ TEST(FieldFiles, AreReadBackForPictures) {
     EXPECT_EQ(frame.find("velocity")->values[3 * k], static_cast<float>(particles[k].velocity.x));
     EXPECT_EQ(frame.find("kind")->values[k], static_cast<float>(particles[k].kind));
   }
+}
+
+// A run's own pictures show the same numbers.
+TEST(RunPictures, AreColouredByTheFieldsOfFiles) {
+  Stand s(heap_case());
+  s.engine->insert(heap(s.c));
+  EXPECT_TRUE(std::isnan(values_of(frame_now(s.c, *s.engine, "coordination"), "coordination").at(0)));
+  for (int k = 0; k < 100; ++k) s.engine->step();
+  const std::vector<ParticleState> particles = s.engine->particles();
+  const ContactSums sums = contact_sums(particles, *s.engine);
+  const auto values = [&](const char* quantity) { return values_of(frame_now(s.c, *s.engine, quantity), quantity); };
+  const auto speed = values("speed"), coordination = values("coordination"), walls = values("wall_contacts"),
+             kind = values("kind"), age = values("age"), force = values("force_z"), mass = values("mass"),
+             diameter = values("diameter");
+  ASSERT_EQ(speed.size(), particles.size());
+  for (size_t k = 0; k < particles.size(); ++k) {
+    const ParticleState& p = particles[k];
+    EXPECT_NEAR(speed[k], norm(p.velocity), 1e-6 * norm(p.velocity));
+    EXPECT_EQ(coordination[k], sums.coordination[k]);
+    EXPECT_EQ(walls[k], sums.wall_contacts[k]);
+    EXPECT_EQ(kind[k], p.kind);
+    EXPECT_NEAR(age[k], 100 * s.engine->dt(), 1e-8);
+    EXPECT_FLOAT_EQ(force[k], sums.force[k].z);
+    EXPECT_FLOAT_EQ(mass[k], p.mass);
+    EXPECT_FLOAT_EQ(diameter[k], 2 * p.radius);
+  }
+  EXPECT_NEAR(frame_now(s.c, *s.engine, "age").positions[0].z, particles[0].position.z, 1e-8);
+  EXPECT_THROW(values("temperature"), std::invalid_argument);
+  ParticleFrame warm = frame_now(s.c, *s.engine, "kind");  // of files that have it
+  warm.fields.push_back({"temperature", 1, std::vector<float>(warm.count(), 300)});
+  EXPECT_EQ(values_of(warm, "temperature").at(0), 300);
 }
 
 TEST(FieldFiles, OfAnotherOriginAreRefusedByName) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <set>
 
 #include "kernels/parallel.h"
 #include "runtime/render/annotations.h"
@@ -94,6 +95,19 @@ TEST(Picture, ABallBetweenItAndTheLightShadesAnother) {
   scene.balls.push_back({centre, 0.05}), scene.ball_colours.push_back(kGreen);
   const Srgb after = render(scene, camera, kSize).at(x, y);
   EXPECT_LT(after[0], before[0] - 30);
+}
+
+// Two level fibres, one above the other, look the same all along: what differs from pixel to pixel is noise.
+TEST(Picture, AFibreInShadeIsSmoothWithTheFewSamplesOfARun) {
+  Scene scene = scene_of({{{0, 0.055, -0.03}, 0.002}});
+  scene.fibres = {{{{-0.3, 0, 0}, {0.3, 0, 0}}, 0.015}, {{{-0.3, 0, 0.032}, {0.3, 0, 0.032}}, 0.015}};
+  const Image image = render(scene, millimetres(), kSize, 4);
+  for (int y = 60 - 13; y <= 60 + 13; ++y) {
+    double sum = 0, squares = 0;
+    for (int x = 10; x < 150; ++x) sum += image.at(x, y)[1], squares += image.at(x, y)[1] * image.at(x, y)[1];
+    const double mean = sum / 140;
+    EXPECT_LT(std::sqrt(squares / 140 - mean * mean), 4) << "row " << y;
+  }
 }
 
 TEST(Picture, ACutShowsAFlatFaceAndWhatIsBehindIt) {
@@ -205,6 +219,103 @@ TEST(ScaleBar, IsAsLongAsTheCameraSays) {
   EXPECT_NEAR(scale.pixels, 120 * (to.x - from.x), 0.5);
 }
 
+// ---- what is written on a picture
+
+constexpr Srgb kGround{120, 130, 140};
+
+Image annotated(const Annotations& a) {
+  Image image(400, 300);
+  image.fill(0, 0, 400, 300, kGround);
+  annotate(image, a);
+  return image;
+}
+Annotations bare() {
+  Annotations a;
+  a.time = std::nan("");
+  return a;
+}
+size_t ink_in(const Image& image, int x0, int y0, int x1, int y1) {
+  size_t dark = 0;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) dark += std::ranges::all_of(image.at(x, y), [](uint8_t v) { return v < 60; });
+  return dark;
+}
+
+TEST(Annotations, NothingAskedForIsNothingDrawn) {
+  Image plain(400, 300);
+  plain.fill(0, 0, 400, 300, kGround);
+  EXPECT_EQ(annotated(bare()), plain);
+}
+
+TEST(Annotations, TheColourBarGoesFromItsLeastBelowToItsMostAbove) {
+  Annotations a = bare();
+  a.colours = ColourScale{"speed", "m/s", 0, 0.5, ColourMap::sequential, {}};
+  const Image image = annotated(a);
+  // The bar's pixels are of the map's colours; those of its least and most colour are at its ends.
+  std::set<Srgb> of_bar;
+  for (int k = 0; k < 120; ++k) of_bar.insert(colour_of(ColourMap::sequential, 1 - (k + 0.5) / 120));
+  int left = 400, right = 0, top = 300, bottom = 0;
+  for (int y = 0; y < 300; ++y)
+    for (int x = 200; x < 400; ++x) {
+      if (!of_bar.contains(image.at(x, y))) continue;
+      left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+    }
+  EXPECT_NEAR(bottom - top + 1, 0.4 * 300, 4);
+  EXPECT_NEAR(right - left + 1, 11, 1);  // as wide as letters are high
+  const auto close = [](const Srgb& p, const Srgb& q) {
+    return std::abs(p[0] - q[0]) + std::abs(p[1] - q[1]) + std::abs(p[2] - q[2]) < 12;
+  };
+  EXPECT_TRUE(close(image.at(left + 3, top), colour_of(ColourMap::sequential, 1)));
+  EXPECT_TRUE(close(image.at(left + 3, bottom), colour_of(ColourMap::sequential, 0)));
+  EXPECT_TRUE(close(image.at(left + 3, (top + bottom) / 2), colour_of(ColourMap::sequential, 0.5)));
+  // Ticks and numbers beside both ends, the name above.
+  EXPECT_GT(ink_in(image, right + 1, top - 5, 400, top + 6), 10u);
+  EXPECT_GT(ink_in(image, right + 1, bottom - 5, 400, bottom + 6), 10u);
+  EXPECT_GT(ink_in(image, left, top - 30, 400, top - 6), 20u);
+}
+
+TEST(Annotations, KindsHaveASwatchEach) {
+  Annotations a = bare();
+  a.colours = ColourScale{"kind", "", 0, 1, ColourMap::sequential, {"sand", "glass", "steel"}};
+  const Image image = annotated(a);
+  int last = 0;
+  for (size_t k = 0; k < 4; ++k) {
+    int count = 0, lowest = 0;
+    for (int y = 0; y < 300; ++y)
+      for (int x = 200; x < 400; ++x)
+        if (image.at(x, y) == colour_of_category(k)) ++count, lowest = y;
+    if (k == 3) {
+      EXPECT_EQ(count, 0);
+      continue;
+    }
+    EXPECT_EQ(count, 11 * 11) << k;
+    EXPECT_GT(lowest, last) << "in the order of the case";
+    EXPECT_GT(ink_in(image, 200, lowest - 11, 400, lowest + 1), 10u) << "its name beside it";
+    last = lowest;
+  }
+}
+
+TEST(Annotations, TheTimeIsAboveLeftAndTheScaleBarBelowLeft) {
+  Annotations a = bare();
+  a.time = 0.125;
+  const Image early = annotated(a);
+  EXPECT_GT(ink_in(early, 0, 0, 120, 40), 30u);
+  EXPECT_EQ(ink_in(early, 0, 60, 400, 300), 0u);
+  a.time = 0.25;
+  EXPECT_NE(annotated(a), early);
+  a = bare();
+  a.scale = ScaleBar{0.01, 77, "10 mm"};
+  const Image scaled = annotated(a);
+  int longest = 0;  // run of ink in a row
+  for (int y = 200; y < 300; ++y)
+    for (int x = 0, run = 0; x < 400; ++x) {
+      run = ink_in(scaled, x, y, x + 1, y + 1) ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+  EXPECT_EQ(longest, 77);
+  EXPECT_EQ(ink_in(scaled, 0, 0, 400, 200), 0u);
+}
+
 TEST(Cameras, FrameTheRegionAndLookAlongTheirAxes) {
   const CameraSubject subject{{{-1, -2, -3}, {1, 2, 5}}, Vec3{0, 0, 1}, 0.5};
   const std::pair<const char*, Vec3> along[] = {{"front", {0, 1, 0}}, {"side", {1, 0, 0}}, {"top", {0, 0, -1}}};
@@ -255,6 +366,23 @@ TEST(Quantities, AreReadFromFieldsAndUnknownOnesAreRefused) {
     EXPECT_NE(std::string(e.what()).find("did you mean 'speed'?"), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("angular_velocity"), std::string::npos) << e.what();
   }
+}
+
+// The six numbers are no vector: their root of squares means nothing.
+TEST(Quantities, OfAStressAreItsPressureAndItsComponents) {
+  ParticleFrame frame;
+  frame.positions = {{0, 0, 0}, {1, 0, 0}}, frame.radii = {0.1f, 0.1f};
+  frame.fields = {{"contact_stress", 6, {30, 60, 90, 1, 2, 3, -9, -6, 3, 4, 5, 6}}};
+  EXPECT_EQ(values_of(frame, "pressure"), (std::vector<double>{60, -4}));
+  EXPECT_EQ(values_of(frame, "contact_stress"), values_of(frame, "pressure"));
+  EXPECT_EQ(values_of(frame, "contact_stress_xx"), (std::vector<double>{30, -9}));
+  EXPECT_EQ(values_of(frame, "contact_stress_zz"), (std::vector<double>{90, 3}));
+  EXPECT_EQ(values_of(frame, "contact_stress_xy"), (std::vector<double>{1, 4}));
+  EXPECT_EQ(values_of(frame, "contact_stress_yz"), (std::vector<double>{2, 5}));
+  EXPECT_EQ(values_of(frame, "contact_stress_xz"), (std::vector<double>{3, 6}));
+  for (const char* name : {"pressure", "contact_stress", "contact_stress_xy"})
+    EXPECT_EQ(colour_scale({}, name, {1, 2}).unit, "Pa") << name;
+  EXPECT_EQ(colour_scale({}, "contact_stress", {1, 2}).quantity, "pressure");
 }
 
 TEST(Cuts, AreReadAndOthersRefused) {

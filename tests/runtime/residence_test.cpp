@@ -9,6 +9,8 @@
 
 #include "geometry/octet_lattice.h"
 #include "runtime/junctions.h"
+#include "runtime/render/colour_map.h"
+#include "runtime/residence_pictures.h"
 #include "tests/runtime/case_text.h"
 #include "tests/scenes.h"
 
@@ -179,7 +181,7 @@ TEST(Residence, WritesWhatIsLeftAtEachJunction) {
   run.until(0.002);
   run.residence.finish(run.view());
   const std::string text = run.text_of("retained.csv");
-  EXPECT_TRUE(text.starts_with("x_m,y_m,z_m,mass_kg,grains\n")) << text;
+  EXPECT_TRUE(text.starts_with("x_m,y_m,z_m,mass_kg,grains,")) << text;
   EXPECT_EQ(std::ranges::count(text, '\n'), 1 + static_cast<long>(lattice.nodes.size()));
   EXPECT_NE(text.find(fmt::format("0.02,0.02,0.14,{:.6g}", grains[0].mass + grains[1].mass).substr(0, 20)),
             std::string::npos)
@@ -187,6 +189,122 @@ TEST(Residence, WritesWhatIsLeftAtEachJunction) {
   const nlohmann::json s = run.residence.summary();
   EXPECT_EQ(s["retained_grains"], 3);
   EXPECT_NEAR(s["retained_at_no_junction_kg"].get<double>(), grains[3].mass, 1e-6 * grains[3].mass);
+}
+
+// One lies on a node, one on the middle of a fibre between two: both have a nearest node, one is at it.
+TEST(Residence, TellsWhatIsLeftAtANodeFromWhatIsLeftAlongFibres) {
+  Case c = falling_case();
+  c.gravity = {0, 0, 0};
+  const double fibre = 0.002, grain = 0.001;  // m, diameter; radius
+  const OctetLattice lattice = octet_lattice(0.04, {1, 1, 2}, {0, 0, 0.1});
+  add_solid(c, fibre_primitives(lattice, fibre, {0, 0}));
+  c.output.residence.entry = 0.18;
+  Fall run(c);
+  const Vec3 node{0.02, 0.02, 0.14}, other{0.04, 0.04, 0.14}, up{0, 0, 0.5 * fibre + grain};
+  const Vec3 along = unit(other - node), edge = (fibre + grain) * along;  // as far as "near" goes
+  const double mass = sphere(c, 0, node).mass;
+  const std::vector<ParticleState> grains = {sphere(c, 0, node + up), sphere(c, 0, 0.5 * (node + other) + up),
+                                             sphere(c, 0, node + 0.99 * edge + Vec3{0, 0, 1e-4}),
+                                             sphere(c, 0, node - 1.01 * edge)};
+  run.engine->insert(grains);
+  run.residence.finish(run.view());
+  const nlohmann::json s = run.residence.summary();
+  EXPECT_EQ(s["retained_near_junctions_grains"], 2);
+  EXPECT_EQ(s["retained_along_fibres_grains"], 2);
+  EXPECT_NEAR(s["retained_near_junctions_kg"].get<double>(), 2 * mass, 1e-6 * mass);
+  EXPECT_NEAR(s["retained_along_fibres_kg"].get<double>(), 2 * mass, 1e-6 * mass);
+  std::istringstream rows(run.text_of("retained.csv"));
+  std::string line;
+  std::getline(rows, line);
+  EXPECT_EQ(line, "x_m,y_m,z_m,mass_kg,grains,near_kg,near_grains,along_fibres_kg,along_fibres_grains");
+  double near = 0, rest = 0, all = 0;
+  while (std::getline(rows, line)) {
+    double row[9];
+    std::istringstream cells(line);
+    for (double& x : row) {
+      std::string cell;
+      std::getline(cells, cell, ',');
+      x = std::stod(cell);
+    }
+    all += row[4], near += row[6], rest += row[8];
+    EXPECT_EQ(row[4], row[6] + row[8]);
+    EXPECT_NEAR(row[3], row[5] + row[7], 1e-6 * mass);
+  }
+  EXPECT_EQ(all, 4);
+  EXPECT_EQ(near, 2);
+  EXPECT_EQ(rest, 2);
+}
+
+// ---- pictures
+
+size_t pixels_of(const Image& image, const Srgb& colour, int from, int to) {
+  size_t count = 0;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = from; x < to; ++x) count += image.at(x, y) == colour;
+  return count;
+}
+
+TEST(ResidencePictures, BarsAreAsTallAsTheMassAndColouredByTheShareThatIsThrough) {
+  const testing::Folder folder;
+  write_residence_pictures(folder.path("residence"), falling_case(), {{0, 0.1, 1e-6}, {0.1, 0.2, 0}, {0.2, 0.3, 3e-6}},
+                           {});
+  const Image image = read_png(fs::path(folder.path("residence")) / "times.png");
+  const int bar = image.width() - 100;  // where the colour bar begins, at the earliest
+  const size_t first = pixels_of(image, colour_of(ColourMap::sequential, 0.25), 0, bar);
+  const size_t last = pixels_of(image, colour_of(ColourMap::sequential, 1), 0, bar);
+  EXPECT_NEAR(static_cast<double>(last) / static_cast<double>(first), 3, 0.05);
+  EXPECT_NEAR(static_cast<double>(last), 760 / 3.0 * 420 / 1.05, 1500);
+  EXPECT_FALSE(fs::exists(fs::path(folder.path("residence")) / "retained.png"));  // there are no junctions
+}
+
+TEST(ResidencePictures, JunctionsAreWhereTheyAreAndColouredByWhatIsLeft) {
+  const testing::Folder folder;
+  Case c = falling_case();
+  const OctetLattice lattice = octet_lattice(0.04, {1, 1, 2}, {0, 0, 0.1});
+  add_solid(c, fibre_primitives(lattice, 0.002, {0, 0}));
+  c.fibres.diameter = 0.004;
+  std::vector<Retained> retained;
+  for (const Vec3& node : lattice.nodes) retained.push_back({.at = node});
+  const auto drawn = [&](const Vec3& heavy, const Vec3& light) {
+    for (Retained& r : retained) {
+      r.mass = norm(r.at - heavy) < 1e-6 ? 4e-6 : norm(r.at - light) < 1e-6 ? 2e-6 : 0;
+      r.grains = r.mass > 0;
+    }
+    write_residence_pictures(folder.path("residence"), c, {}, retained);
+    return read_png(fs::path(folder.path("residence")) / "retained.png");
+  };
+  const Srgb most = colour_of(ColourMap::sequential, 1), half = colour_of(ColourMap::sequential, 0.5);
+  const auto rows_of = [&](const Image& image, const Srgb& colour, int from, int to) {
+    double sum = 0, count = 0;
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = from; x < to; ++x)
+        if (image.at(x, y) == colour) sum += y, ++count;
+    EXPECT_GT(count, 50);
+    return sum / count;
+  };
+  const Image image = drawn({0.04, 0.02, 0.16}, {0.02, 0.02, 0.14});  // in the right-hand face; in the middle
+  const int middle = image.width() / 2 - 20, bar = image.width() - 110;
+  // From the front it is at the right edge, from the side in the middle; once in each map; the higher above the lower.
+  EXPECT_LT(rows_of(image, most, 0, middle), rows_of(image, half, 0, middle) - 50);
+  EXPECT_LT(rows_of(image, most, middle, bar), rows_of(image, half, middle, bar) - 50);
+  EXPECT_NEAR(rows_of(image, most, 0, middle), rows_of(image, most, middle, bar), 1);
+  // Two that lie behind each other from the front are one there: of 6 mg only in that map.
+  const Image behind = drawn({0.02, 0.04, 0.12}, {0.02, 0, 0.12});
+  EXPECT_GT(pixels_of(behind, most, 0, middle), 50u);
+  EXPECT_EQ(pixels_of(behind, most, middle, bar), 0u);
+  EXPECT_FALSE(fs::exists(fs::path(folder.path("residence")) / "times.png"));
+}
+
+TEST(ResidencePictures, ARunLeavesBoth) {
+  Case c = falling_case();
+  add_solid(c, fibre_primitives(octet_lattice(0.04, {1, 1, 2}, {0.2, 0.2, 0.1}), 0.002, {0, 0}));
+  Fall run(c);
+  const ParticleState grain = sphere(c, 0, {0, 0, 0.25});
+  run.engine->insert({&grain, 1});
+  run.until(0.2);
+  run.residence.finish(run.view());
+  EXPECT_GT(read_png(run.path / "residence" / "times.png").width(), 700);
+  EXPECT_GT(read_png(run.path / "residence" / "retained.png").width(), 300);
 }
 
 TEST(Junctions, OfAnOctetLatticeAreItsNodesAndReachEverywhere) {

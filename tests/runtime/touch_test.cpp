@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "geometry/closest_point.h"
+#include "runtime/render/colour_map.h"
 #include "runtime/touch_files.h"
 #include "runtime/touch_maps.h"
 #include "runtime/touch_numbers.h"
@@ -190,6 +191,40 @@ TEST(TouchMaps, OfASphereAtRestAreItsTwoCellsAllTheTimeWithItsWeight) {
   const nlohmann::json j = touch_summary(c, maps.surface(), maps.record());
   EXPECT_NEAR(j["fibres"]["dead_share"].get<double>(), 1 - 2.0 / maps.surface().size(), 1e-12);
   EXPECT_EQ(j["fibres"]["lower_half"]["dead_share"], 1.0);
+}
+
+// The force per contact at one end is three times that at the other, which has four times the contacts.
+TEST(TouchMaps, HaveAPictureOfEachQuantity) {
+  const testing::Folder folder;
+  Case c = with_fibres({{{-2e-3, 0, 0}, {2e-3, 0, 0}}});
+  const TouchSurface surface(c);
+  TouchRecord record;
+  record.cells.resize(surface.size());
+  for (const double side : {-1e-3, 1e-5, 1e-3}) {  // three cells round the fibre at either end
+    const ContactState hard = contact_at(c, 0, {-1.5e-3, side, 1e-3}, 3, 1),
+                       soft = contact_at(c, 0, {1.5e-3, side, 1e-3}, 1, 1);
+    add_touches(surface, std::vector{hard, soft, soft, soft, soft}, record);
+  }
+  const std::filesystem::path out = folder.path("touch");
+  std::filesystem::create_directories(out);
+  write_touch_pictures(out, c, surface, record);
+  // Rows (from below) of the cells with the largest value; the touched cells are off the colour bar's side.
+  const auto height_of = [&](const char* file) {
+    const Image image = read_png(out / (std::string("fibres_") + file + ".png"));
+    const Srgb most = colour_of(ColourMap::sequential, 1);
+    double sum = 0, count = 0;
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < 360; ++x)
+        if (image.at(x, y) == most) sum += image.height() - y, ++count;
+    EXPECT_GT(count, 100) << file;
+    return sum / count;
+  };
+  const double low = height_of("mean_normal_force"), high = height_of("contacts");
+  EXPECT_GT(std::abs(high - low), 150);         // which end is below is open: the fibre is level
+  EXPECT_NEAR(height_of("pressure"), high, 1);  // 4 N against 3 N
+  EXPECT_NEAR(height_of("sliding_work"), high, 1);
+  EXPECT_GT(read_png(out / "fibres_touched_share.png").width(), 300);
+  EXPECT_FALSE(std::filesystem::exists(out / "fibres_normal_force.png"));
 }
 
 TEST(TouchMaps, AreReadByVtkAsTheyAre) {
