@@ -1,6 +1,6 @@
-// The mixed-precision engine against the double reference: forces of one step on a dense bed, where a bed comes to rest,
-// free fall, and a bed that is still settling. Claim: on a bed some fifteen layers deep a step's force is right to 1e-4
-// m g, and to 1e-5 m g rms. What of kinetic energy holds and what does not: bench/README.md, "Precision".
+// The mixed-precision engine against the double reference: forces of one step on a dense bed, where a bed comes to
+// rest, free fall, and a bed that is still settling. Claim: on a bed some fifteen layers deep a step's force is right
+// to 1e-4 m g, and to 1e-5 m g rms. What of kinetic energy holds and what does not: bench/README.md, "Precision".
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -153,8 +153,8 @@ TEST(Precision, OfVelocitiesInFreeFall) {
 
 // A bed in the middle of its settling: two runs in double of which one started from velocities that were rounded as a
 // float is come out percents apart, and mixed from double within ten times that. No more can be said: the control's own
-// figure is 0.02 to 0.12 with the numbers drawn (a factor of two, tried first, was not kept: 0.054 against 0.024), and it
-// rounds once where the mixed run rounds at each step.
+// figure is 0.02 to 0.12 with the numbers drawn (a factor of two, tried first, was not kept: 0.054 against 0.024), and
+// it rounds once where the mixed run rounds at each step.
 TEST(Precision, OfABedThatSettlesIsThatOfItsStart) {
   const LooseBed bed{11, 11, 14, kRadius, kRadius, 2.6};
   const Case c = with_precision(bed_case(bed), Precision::reference);
