@@ -13,6 +13,7 @@
 #include "kernels/step_kernels.h"
 #include "runtime/case_error.h"
 #include "runtime/case_reader.h"
+#include "runtime/list_check.h"
 #include "runtime/render/options.h"
 #include "runtime/report.h"
 #include "runtime/run_folder.h"
@@ -221,9 +222,12 @@ int command_line(int argc, char** argv) {
   resume_command.add_option("DIR", a.out, "its results folder")->required();
   add_threads_option(resume_command, a);
   add_run_options(resume_command, a);
-  run_command.add_option("--check-lists", a.check_lists,
-                         "steps between proofs by a fresh search that no contact is missing from the lists (default "
-                         "20000; 0: none; 1: every step, for finding errors of the program)");
+  run_command.add_option(
+      "--check-lists", a.check_lists,
+      fmt::format("steps between proofs by a fresh search that no contact is missing from the lists "
+                  "(default {}; 0: none; 1: every step, for finding errors of the program); up to {} "
+                  "particles by brute force, every pair and every fibre and wall looked at",
+                  scree::EngineOptions{}.list_check_interval, scree::kBruteForceUpTo));
   run_command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   CLI::App& check_command = *app.add_subcommand("check", "validate a case and print what would run");
   add_case_options(check_command, a);
