@@ -1,5 +1,6 @@
 // The benchmark program. Beside Google Benchmark's options it takes
 //     --states=DIR    keep prepared states there as CSV files (bench/scenes.h)
+//     --isa=NAME      the kernels' instruction set, as of `scree run`: avx512, avx2, neon, scalar
 //     --prepare=NAME  with --states: only make that state: settled_tile, polydisperse_tile, drain_in_flow
 #include <benchmark/benchmark.h>
 
@@ -52,6 +53,7 @@ int prepare(const std::string& name) {
 
 int run(std::vector<char*> arguments) {
   if (const auto folder = taken_option(arguments, "--states")) keep_states_in(*folder);
+  if (const auto isa = taken_option(arguments, "--isa")) use_isa(*isa);
   if (const auto name = taken_option(arguments, "--prepare")) return prepare(*name);
   const bool own_table = !has_option(arguments, "--benchmark_format") && !has_option(arguments, "--benchmark_list");
   int count = static_cast<int>(arguments.size());

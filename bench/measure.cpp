@@ -1,9 +1,12 @@
 #include "bench/measure.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -11,6 +14,33 @@
 
 namespace scree::bench {
 namespace {
+
+// Bytes, of what the system says of this process; 0 where it does not say.
+double memory_now(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (double kilobytes = 0; word == key + ":" && status >> kilobytes) return 1024 * kilobytes;
+  return 0;
+}
+
+// From here on the peak is counted anew. False where that cannot be done: not Linux, or not allowed.
+bool reset_peak() {
+#if defined(__GLIBC__)
+  malloc_trim(0);  // what was freed before does not count
+#endif
+  std::ofstream file("/proc/self/clear_refs");
+  return static_cast<bool>(file << 5 << std::flush);
+}
+
+// The most that the process holds during steps with forced rebuilds, a particle: everything, the program itself too.
+// Taken after the timing and the hash.
+void report_peak_of_rebuilds(benchmark::State& state, Engine& engine) {
+  if (!reset_peak()) return;
+  const double count = static_cast<double>(engine.count());
+  state.counters["memory_before_rebuild_per_particle"] = memory_now("VmRSS") / count;
+  for (int k = 0; k < 3; ++k) engine.insert({}), engine.step(), engine.step();
+  state.counters["peak_of_rebuild_per_particle"] = memory_now("VmHWM") / count;
+}
 
 double peak_memory() {  // bytes, of the process so far
   rusage usage{};
@@ -66,6 +96,7 @@ void time_steps(benchmark::State& state, Engine& engine, int rebuild_every) {
       engine.step();
     }
   report_steps(state, engine, engine.counters().particle_steps - before, engine.counters().steps - steps_before, copy);
+  if (rebuild_every > 0) report_peak_of_rebuilds(state, engine);
 }
 
 void set_rate(benchmark::State& state, const std::string& what, double amount) {

@@ -9,6 +9,7 @@
 
 #include "geometry/solid_index.h"
 #include "geometry/walls.h"
+#include "kernels/step_kernels.h"
 #include "runtime/case_physics.h"
 #include "runtime/case_reader.h"
 #include "runtime/csv_particles.h"
@@ -24,6 +25,7 @@ constexpr double kExit = -30e-3;       // m, exit plane of the small lattice
 constexpr double kLid = 100e-3;        // m, height of the paper's lid
 
 std::filesystem::path states_folder;
+EngineOptions engine_options;
 
 // What a CSV file can hold: no spins; the mass follows from the radius. Then a state that was read back is the same.
 State normalised(State state) {
@@ -79,6 +81,11 @@ void keep_states_in(const std::filesystem::path& folder) {
   states_folder = folder;
 }
 
+void use_isa(const std::string& name) {
+  select_kernels<float>(name, {});
+  engine_options.isa = name;
+}
+
 void write_state_csv(const std::filesystem::path& path, const State& state) {
   auto file = fmt::output_file(path.string());
   file.print("x,y,z,r,vx,vy,vz\n");
@@ -88,7 +95,7 @@ void write_state_csv(const std::filesystem::path& path, const State& state) {
 }
 
 std::unique_ptr<Engine> started_engine(const Case& c, const State& state, int steps) {
-  auto engine = make_engine(c);
+  auto engine = make_engine(c, engine_options);
   if (!c.outlets.empty())
     engine->set_removal([outlets = c.outlets](const ParticleState& p) {
       for (size_t k = 0; k < outlets.size(); ++k)

@@ -17,6 +17,9 @@ using State = std::vector<ParticleState>;
 // want the same state in several processes, or in another code. Without it a state lives as long as the process.
 void keep_states_in(const std::filesystem::path& folder);
 
+// Engines that are made from now on take this instruction set. Throws std::invalid_argument where it is not available.
+void use_isa(const std::string& name);
+
 // x, y, z, r, vx, vy, vz with all digits: reading gives the same bits.
 void write_state_csv(const std::filesystem::path& path, const State& state);
 

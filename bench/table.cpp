@@ -23,17 +23,17 @@ std::string main_rate(const Run& run) {
 }
 
 std::string step_columns(const Run& run) {
-  if (counter(run, "particle_steps/s") <= 0) return fmt::format("{:40}", "");
-  return fmt::format("{:9.4g} {:9.0f} {:9.1f} {:9.0f}  ", counter(run, "contacts/s") / 1e6,
+  if (counter(run, "particle_steps/s") <= 0) return fmt::format("{:50}", "");
+  return fmt::format("{:9.4g} {:9.0f} {:9.1f} {:9.0f} {:9.0f}  ", counter(run, "contacts/s") / 1e6,
                      counter(run, "bytes_per_particle_step"), 100 * counter(run, "copy_share"),
-                     counter(run, "bytes_held_per_particle"));
+                     counter(run, "bytes_held_per_particle"), counter(run, "peak_of_rebuild_per_particle"));
 }
 
 }  // namespace
 
 bool TableReporter::ReportContext(const Context&) {
-  fmt::print("{:<44} {:>10}  {:>9}   {:<16} {:>9} {:>9} {:>9} {:>9}   {}\n", "benchmark", "ms", "rate", "of",
-             "M cont./s", "B/p.step", "% of copy", "B held", "hash");
+  fmt::print("{:<44} {:>10}  {:>9}   {:<16} {:>9} {:>9} {:>9} {:>9} {:>9}   {}\n", "benchmark", "ms", "rate", "of",
+             "M cont./s", "B/p.step", "% of copy", "B held", "B peak", "hash");
   return true;
 }
 

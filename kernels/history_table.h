@@ -62,6 +62,14 @@ struct HistoryTable {
     visit("solids", &HistoryTable::solids);
   }
 
+  size_t bytes() const {  // held, in use or not
+    size_t total = (pairs.capacity() + solids.capacity()) * sizeof(ChunkHistory<Real>);
+    for (const auto* chunks : {&pairs, &solids})
+      for (const ChunkHistory<Real>& c : *chunks)
+        total += c.first.capacity() * sizeof(uint32_t) + c.entries.capacity() * sizeof(HistoryEntry<Real>);
+    return total;
+  }
+
   // What old particle a's pairs had.
   class Pairs {
    public:

@@ -219,7 +219,9 @@ void Domain<Real>::advance_chunks() {
 template <class Real>
 size_t Domain<Real>::bytes() const {
   size_t total = now_.bytes() + next_.bytes() + grid_.bytes() + (packed_.capacity() + packed_scratch_.capacity()) * 8 +
-                 old_index_.capacity() * 4;
+                 old_index_.capacity() * 4 + history_.bytes() + contacts_.capacity() * sizeof(contacts_[0]) +
+                 outcomes_.capacity() * sizeof(outcomes_[0]) + prepared_.capacity() * sizeof(prepared_[0]) +
+                 insertions_.capacity() * sizeof(insertions_[0]);
   for (const auto& c : contacts_) total += c.bytes();
   return total;
 }

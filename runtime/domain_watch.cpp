@@ -101,7 +101,7 @@ template <class Real>
 void Domain<Real>::check_lists() const {
   const auto missing =
       find_missing_contact<Real>({next_.data(), count_, chunk_size_, &contacts_, box_, settings_.period,
-                                  settings_.inverse_period, max_radius_, index_.get(), &tables_});
+                                  settings_.inverse_period, max_radius_, index_.get(), &tables_, &prepared_});
   if (!missing) return;
   const ParticleState s = state_of(next_[missing->i]);
   const std::string other = missing->j ? fmt::format("particle {}", state_of(next_[*missing->j]).id)

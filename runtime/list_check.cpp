@@ -87,8 +87,9 @@ class Cells {
 template <class Real>
 class Check {
  public:
-  explicit Check(const ListCheckTask<Real>& task)
-      : t_(task), positions_(wrapped(task)), cells_(positions_, task.box, task.period, 2 * task.max_radius) {}
+  explicit Check(const ListCheckTask<Real>& task) : t_(task), positions_(wrapped(task)) {
+    if (task.count > task.brute_force_up_to) cells_.emplace(positions_, task.box, task.period, 2 * task.max_radius);
+  }
 
   std::optional<MissingContact> run() const {
     std::vector<std::optional<MissingContact>> missing(t_.contacts->size());
@@ -127,13 +128,25 @@ class Check {
 
   std::optional<MissingContact> missing_pair(uint32_t i, const Listed& lists) const {
     std::optional<MissingContact> missing;
-    cells_.for_each_near(positions_[i], [&](uint32_t j) {
+    const auto look = [&](uint32_t j) {
       if (j == i || missing) return;
       const double sum = radius(i) + radius(j);
-      const double overlap = sum - norm(minimum_image(positions_[i] - positions_[j], t_.period, t_.inverse_period));
+      const Vec3 d = minimum_image(positions_[i] - positions_[j], t_.period, t_.inverse_period);
+      if (dot(d, d) >= sum * sum) return;
+      const double overlap = sum - norm(d);
       if (overlap > kTouching * sum && !holds(lists.pairs, key(i, j))) missing = MissingContact{i, j, 0, 0, overlap};
-    });
+    };
+    if (cells_)
+      cells_->for_each_near(positions_[i], look);
+    else
+      for (uint32_t j = 0; j < t_.count; ++j) look(j);
     return missing;
+  }
+
+  // As the index answers, without it.
+  void look_at_every_primitive(const Vec3& x, double reach, std::vector<uint32_t>& touching) const {
+    for (uint32_t k = 0; k < t_.prepared->size(); ++k)
+      if (distance((*t_.prepared)[k], x) <= reach) touching.push_back(k);
   }
 
   std::optional<MissingContact> missing_solid(uint32_t i, const Listed& lists) const {
@@ -141,7 +154,11 @@ class Check {
     thread_local std::vector<uint32_t> touching;
     touching.clear();
     const Vec3 x{t_.particles[i].x, t_.particles[i].y, t_.particles[i].z};  // images reach beyond the borders
-    t_.index->query(x, (1 - kTouching) * radius(i), touching);
+    const double reach = (1 - kTouching) * radius(i);
+    if (cells_)
+      t_.index->query(x, reach, touching);
+    else
+      look_at_every_primitive(x, reach, touching);
     for (const uint32_t primitive : touching) {
       const int kind = t_.tables->kind[primitive];
       const uint32_t row = t_.tables->row[primitive];
@@ -152,7 +169,7 @@ class Check {
 
   const ListCheckTask<Real>& t_;
   std::vector<Vec3> positions_;
-  Cells cells_;
+  std::optional<Cells> cells_;  // none: by brute force
 };
 
 }  // namespace

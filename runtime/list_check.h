@@ -1,16 +1,21 @@
 // Proves that the contact lists hold every contact, by a fresh search of its own: what a missed rebuild, a wrong bound
-// on the particles' travel or a wrong search would break first. Reads only. Costs about as much as a list rebuild.
+// on the particles' travel or a wrong search would break first. Reads only. Few particles are looked through by brute
+// force, every pair and every primitive, with none of the engine's search in it; for many, a grid of cells and the
+// solid's index are asked anew, which costs about as much as a list rebuild.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "geometry/closest_point.h"
 #include "geometry/solid_index.h"
 #include "kernels/contacts.h"
 #include "kernels/particle.h"
 #include "kernels/solid_tables.h"
 
 namespace scree {
+
+inline constexpr uint32_t kBruteForceUpTo = 20000;  // particles: 0.4 G pairs, a second of a core
 
 // The particles as they were when the step took its forces, and the lists that it took them from.
 template <class Real>
@@ -23,6 +28,8 @@ struct ListCheckTask {
   double max_radius;                      // m
   const SolidIndex* index;
   const SolidTables<Real>* tables;
+  const std::vector<PreparedPrimitive>* prepared;  // what `index` finds, for brute force
+  uint32_t brute_force_up_to = kBruteForceUpTo;    // particles
 };
 
 struct MissingContact {

@@ -14,6 +14,7 @@
 #include "kernels/step_kernels.h"
 #include "runtime/case_error.h"
 #include "runtime/case_reader.h"
+#include "runtime/list_check.h"
 #include "runtime/render/options.h"
 #include "runtime/report.h"
 #include "runtime/run_folder.h"
@@ -199,8 +200,10 @@ void add_run_options(CLI::App& command, Arguments& a) {
                   "wall-clock seconds between checkpoints (default: the case's checkpoint.interval, 600)")
       ->check(CLI::PositiveNumber);
   command.add_option("--check-lists", a.check_lists,
-                     "steps between proofs by a fresh search that no contact is missing from the lists (default "
-                     "20000; 0: none; 1: every step, for finding errors of the program)");
+                     fmt::format("steps between proofs by a fresh search that no contact is missing from the lists "
+                                 "(default {}; 0: none; 1: every step, for finding errors of the program); up to {} "
+                                 "particles by brute force, every pair and every fibre and wall looked at",
+                                 scree::EngineOptions{}.list_check_interval, scree::kBruteForceUpTo));
   command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   command.add_flag("--profile", a.profile, "print at the end where the time went, part by part of the step");
 }

@@ -21,14 +21,14 @@ from inputs import read_state, tiled, write_data
 TILE_SIDE = 25 * 4e-4  # m, bench/scenes.cpp
 TILE_HEIGHT = 4 * 16 * 4e-4
 PAPER_SKIN = 800e-6  # m, Kaur et al. 2023
-BED_SKINS = [10e-6, 20e-6, 40e-6, 80e-6]
+BED_SKINS = [5e-6, 10e-6, 20e-6, 40e-6, 80e-6, 160e-6]
 DRAIN_SKINS = [20e-6, 40e-6, 80e-6, 160e-6]
 BED_WARM_UP, DRAIN_WARM_UP = 20, 200  # steps, as bench/steps.cpp
 DRAIN_STEPS = 1000
 BYTES_OF_10M = 6e9  # that the 10M bed needs at its peak, this program's own copy of the particles included
 
 # Within a round: a ratio's two measurements are close in time.
-ORDER = ["lammps_bed", "liggghts_bed_paper_skin", "liggghts_bed", "scree_bed", "scree_bed_1_thread",
+ORDER = ["lammps_bed_paper_skin", "lammps_bed", "liggghts_bed_paper_skin", "liggghts_bed", "scree_bed", "scree_bed_1_thread",
          "scree_polydisperse_bed", "scree_bed_10M", "liggghts_drain", "scree_drain"]
 
 # ratio: numerator, denominator
@@ -40,7 +40,10 @@ RATIOS = {
     "poly_vs_mono": ("scree_polydisperse_bed", "scree_bed"),
     "threads_2_vs_1": ("scree_bed", "scree_bed_1_thread"),
 }
-FURTHER_RATIOS = {"bed_1M_vs_lammps_best": ("scree_bed", "lammps_bed")}
+FURTHER_RATIOS = {
+    "bed_1M_vs_lammps_best": ("scree_bed", "lammps_bed"),
+    "bed_1M_vs_lammps_paper_skin": ("scree_bed", "lammps_bed_paper_skin"),
+}
 
 
 def say(text):
@@ -75,6 +78,7 @@ class Comparison:
         self.reasons = {}  # by name: why there is no measurement
         self.values = {}
         self.searches = {}
+        self.warnings = []
 
     # ---- set-up
 
@@ -98,14 +102,18 @@ class Comparison:
             speeds.append(run(**candidate)["particle_steps_per_second"])
             say(f"{name}: {text_of(candidate)}: {speeds[-1] / 1e6:.3g} M particle-steps/s")
         self.searches[name] = [{**c, "particle_steps_per_second": s} for c, s in zip(candidates, speeds)]
-        return candidates[speeds.index(max(speeds))]
+        best = candidates[speeds.index(max(speeds))]
+        if edge := skin_at_edge(best, candidates):
+            self.warnings.append(f"{name}: the best skin, {best['skin'] * 1e6:g} um, is the {edge} of those tried: "
+                                 "a better one may lie beyond")
+            say(f"warning: {self.warnings[-1]}")
+        return best
 
     def add_peer_beds(self, peer, bed_files):
         name, kind = f"{peer.name.lower()}_bed", peer.name.lower()
         if reason := peer.missing():
             self.leave_out(name, reason)
-            if peer is LIGGGHTS:
-                self.leave_out(f"{name}_paper_skin", reason)
+            self.leave_out(f"{name}_paper_skin", reason)
             return
 
         def run(skin, data=bed_files["small"], steps=200):
@@ -115,8 +123,7 @@ class Comparison:
         best = self.search(f"{peer.name}, small bed", run, [{"skin": s} for s in BED_SKINS])
         data, steps = bed_files["timed"], 400 if self.quick else 100
         self.add(name, lambda: run(**best, data=data, steps=steps), **best)
-        if peer is LIGGGHTS:
-            self.add(f"{name}_paper_skin", lambda: run(PAPER_SKIN, data, 100 if self.quick else 30), skin=PAPER_SKIN)
+        self.add(f"{name}_paper_skin", lambda: run(PAPER_SKIN, data, 100 if self.quick else 30), skin=PAPER_SKIN)
 
     def add_peer_drain(self):
         if reason := LIGGGHTS.missing():
@@ -212,8 +219,17 @@ class Comparison:
         further, further_by_round, further_reasons = self.ratios(FURTHER_RATIOS, figures)
         return {"ratios": ratios, "further_ratios": further, "by_round": by_round | further_by_round,
                 "reasons": reasons | further_reasons,
-                "behind": RATIOS | FURTHER_RATIOS, "figures": figures, "searches": self.searches, "quick": self.quick,
+                "behind": RATIOS | FURTHER_RATIOS, "figures": figures, "searches": self.searches,
+                "warnings": self.warnings, "quick": self.quick,
                 "rounds": self.rounds}
+
+
+def skin_at_edge(best, candidates):
+    """Which end of the skins tried the best one is, or nothing."""
+    skins = sorted({c["skin"] for c in candidates})
+    if len(skins) < 2:
+        return None
+    return {skins[0]: "smallest", skins[-1]: "largest"}.get(best["skin"])
 
 
 def text_of(candidate):
@@ -232,6 +248,8 @@ def print_results(results):
         rounds = ", ".join(f"{r:.3g}" for r in results["by_round"].get(name, []))
         value = f"{ratio:8.3g}  {rounds}" if ratio is not None else f"       -  ({results['reasons'][name]})"
         print(f"{name:<32} {value}")
+    for warning in results["warnings"]:
+        print(f"warning: {warning}")
     if results["quick"]:
         print("--quick: the beds are of 94,536 grains, not of a million")
 

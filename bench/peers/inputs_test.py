@@ -4,6 +4,7 @@ import math
 import tempfile
 from pathlib import Path
 
+import compare
 import inputs
 import lattice_mesh
 
@@ -53,6 +54,18 @@ def test_tiles_stand_side_by_side():
 def test_constants_are_the_case_s():
     v = inputs.constants()
     assert (v["youngs_1"], v["sliding_11"], v["sliding_12"], v["rolling_12"], v["dt"]) == (1e7, 0.53, 0.5, 0.41, 5e-6)
+
+
+def test_a_best_skin_at_an_end_of_the_search_is_told():
+    skins = [{"skin": s} for s in compare.BED_SKINS]
+    assert compare.skin_at_edge(skins[0], skins) == "smallest" and compare.skin_at_edge(skins[-1], skins) == "largest"
+    assert compare.skin_at_edge(skins[2], skins) is None
+    assert compare.skin_at_edge(skins[0], [skins[0], {**skins[0], "grid": [1, 1, 2]}]) is None  # grids, not skins
+
+
+def test_every_ratio_is_of_two_measurements_that_are_taken():
+    for pair in (compare.RATIOS | compare.FURTHER_RATIOS).values():
+        assert set(pair) <= set(compare.ORDER)
 
 
 if __name__ == "__main__":

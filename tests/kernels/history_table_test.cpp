@@ -189,5 +189,16 @@ TEST(Array, SwapsWithoutCopying) {
   EXPECT_EQ(b[3], 1);
 }
 
+TEST(HistoryTable, BytesAreWhatItHoldsInUseOrNot) {
+  HistoryTable<float> table;
+  EXPECT_EQ(table.bytes(), 0u);
+  table.pairs.resize(2), table.solids.resize(1);
+  const size_t empty = table.bytes();
+  table.pairs[1].entries.reserve(100), table.solids[0].first.reserve(50);
+  EXPECT_EQ(table.bytes() - empty, 100 * sizeof(HistoryEntry<float>) + 50 * sizeof(uint32_t));
+  table.pairs[1].entries.resize(60), table.pairs[1].entries.clear();
+  EXPECT_EQ(table.bytes() - empty, 100 * sizeof(HistoryEntry<float>) + 50 * sizeof(uint32_t));
+}
+
 }  // namespace
 }  // namespace scree

@@ -1,6 +1,7 @@
 // Imports run one way: geometry <- kernels <- runtime; a foreign library lives behind one file.
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -69,6 +70,31 @@ TEST(Layout, NothingIncludesTestsOrBenchmarks) {
 TEST(Layout, OneFileNamesTheSimdLibrary) {
   EXPECT_EQ(sources_where(kRooms, includes("hwy/")), Files{"kernels/simd.h"});
   EXPECT_EQ(sources_where(kRooms, includes("immintrin")), Files{});
+}
+
+// What the choice of an instruction set needs, and nothing else: no intrinsics, no builtins of one, no macros that ask.
+// Comments may speak of them.
+TEST(Layout, FewFilesNameInstructionSets) {
+  const auto names_a_set = [](const std::string& text) {
+    static const char* const sets[] = {
+        "avx",        "sse2",   "sse3",        "sse4",          "neon",           "altivec",
+        "__x86_64__", "_m_x64", "__aarch64__", "__arm",         "_mm_",           "_mm256_",
+        "_mm512_",    "vld1q_", "vst1q_",      "__builtin_cpu", "__builtin_ia32", "__builtin_aarch64"};
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      std::string code = line.substr(0, line.find("//"));
+      for (char& c : code) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      for (const char* set : sets)
+        if (code.find(set) != std::string::npos) return true;
+    }
+    return false;
+  };
+  EXPECT_EQ(sources_where(kRooms, names_a_set),
+            (Files{"kernels/step_avx512.cpp", "kernels/step_kernels.cpp", "kernels/step_table.h"}));
+  for (const char* known : {"if (isa == \"avx2\")", "#if defined(__aarch64__)", "__builtin_cpu_init();",
+                            "x = _mm256_add_ps(a, b);", "y = vld1q_f32(p);"})
+    EXPECT_TRUE(names_a_set(known)) << known;
+  EXPECT_FALSE(names_a_set("const int savings = pressed + message;  // AVX-512"));
 }
 
 TEST(Layout, OneFileNamesTheThreadingRuntime) {

@@ -1,5 +1,6 @@
-// The mixed-precision engine against the double reference: forces of one step on a dense bed, and where a bed comes to
-// rest. Claim: on a bed some fifteen layers deep a step's force is right to 1e-4 m g, and to 1e-5 m g rms.
+// The mixed-precision engine against the double reference: forces of one step on a dense bed, where a bed comes to
+// rest, free fall, and a bed that is still settling. Claim: on a bed some fifteen layers deep a step's force is right
+// to 1e-4 m g, and to 1e-5 m g rms. What of kinetic energy holds and what does not: bench/README.md, "Precision".
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -101,7 +102,11 @@ void expect_within_claim(const ForceError& e, const std::string& step) {
   EXPECT_GT(e.deepest, 1);
 }
 
-void expect_precisions_agree(const LooseBed& bed, int settling_steps) {
+double difference(double value, double reference) { return std::abs(value / reference - 1); }
+
+// `energy`: the bound on the relative difference of kinetic energies, twice what was seen. Of a bed at rest that is a
+// difference of next to nothing: its grains creep at 0.1 mm/s.
+void expect_precisions_agree(const LooseBed& bed, int settling_steps, double energy) {
   const Case c = bed_case(bed);
   TwoPrecisions both(c, settled(bed, settling_steps));
   // The first step has normal forces and damping only and kicks by half a step; the second adds friction.
@@ -109,20 +114,74 @@ void expect_precisions_agree(const LooseBed& bed, int settling_steps) {
   expect_within_claim(both.step_and_compare(kStep), "second_step");
   both.step(1998);
   const BedAverages mixed = averages(both.mixed()), reference = averages(both.reference());
-  report("mean_overlap_difference", std::abs(mixed.overlap / reference.overlap - 1));
+  report("mean_overlap_difference", difference(mixed.overlap, reference.overlap));
   report("coordination_difference", std::abs(mixed.coordination - reference.coordination));
-  report("kinetic_energy_difference", std::abs(mixed.kinetic_energy / reference.kinetic_energy - 1));
+  report("kinetic_energy", reference.kinetic_energy);
+  report("kinetic_energy_difference", difference(mixed.kinetic_energy, reference.kinetic_energy));
   report("coordination", reference.coordination);
   EXPECT_GT(reference.coordination, 3.5);
-  EXPECT_NEAR(mixed.overlap / reference.overlap, 1, 1e-6);
+  EXPECT_LT(difference(mixed.overlap, reference.overlap), 1e-6);
   EXPECT_EQ(mixed.coordination, reference.coordination);
-  EXPECT_NEAR(mixed.kinetic_energy / reference.kinetic_energy, 1, 1e-2);
+  EXPECT_LT(difference(mixed.kinetic_energy, reference.kinetic_energy), energy);
 }
 
-TEST(Precision, OfForcesOnADenseBedIsAsClaimed) { expect_precisions_agree({11, 11, 14, kRadius, kRadius, 2.6}, 25000); }
+TEST(Precision, OfForcesOnADenseBedIsAsClaimed) {
+  expect_precisions_agree({11, 11, 14, kRadius, kRadius, 2.6}, 25000, 1.5e-5);
+}
 
 TEST(Precision, OfForcesOnADenseBedOfSizesOneToThreeIsAsClaimed) {
-  expect_precisions_agree({8, 8, 12, kRadius, 3 * kRadius, 2.6}, 40000);
+  expect_precisions_agree({8, 8, 12, kRadius, 3 * kRadius, 2.6}, 40000, 6e-5);
+}
+
+// A velocity is a float and g dt is a small part of it: the sum is rounded, and as g dt is the same in each step, it is
+// rounded the same way until the velocity's exponent changes. The error does not average out.
+TEST(Precision, OfVelocitiesInFreeFall) {
+  Case c = ceramic_case({{-1, -1, -1}, {1, 1, 1}});
+  c.gravity = {0, 0, -kGravity};
+  std::vector<ParticleState> start;
+  for (int k = 0; k < 200; ++k) start.push_back(grain({4e-3 * k - 0.4, 0, 0.5}, kRadius, {0, 0, -1e-3 * k}));
+  TwoPrecisions both(c, start);
+  both.step(2000);
+  const auto mixed = by_id(both.mixed()), reference = by_id(both.reference());
+  double worst = 0;
+  for (size_t k = 0; k < mixed.size(); ++k)
+    worst = std::max(worst, difference(mixed[k].velocity.z, reference[k].velocity.z));
+  report("free_fall_velocity_error_max", worst);
+  EXPECT_GT(worst, 1e-6);
+  EXPECT_LT(worst, 8.5e-5);
+}
+
+// A bed in the middle of its settling: two runs in double of which one started from velocities that were rounded as a
+// float is come out percents apart, and mixed from double within ten times that. No more can be said: the control's own
+// figure is 0.02 to 0.12 with the numbers drawn (a factor of two, tried first, was not kept: 0.054 against 0.024), and
+// it rounds once where the mixed run rounds at each step.
+TEST(Precision, OfABedThatSettlesIsThatOfItsStart) {
+  const LooseBed bed{11, 11, 14, kRadius, kRadius, 2.6};
+  const Case c = with_precision(bed_case(bed), Precision::reference);
+  const std::vector<ParticleState> start = settled(bed, 4000);
+  TwoPrecisions both(c, start);
+  both.step(200);
+  const double early = difference(averages(both.mixed()).kinetic_energy, averages(both.reference()).kinetic_energy);
+  both.step(1800);
+  const BedAverages reference = averages(both.reference());
+  const double late = difference(averages(both.mixed()).kinetic_energy, reference.kinetic_energy);
+  double rounded = 0;  // the largest difference that a rounded start makes
+  for (uint32_t seed = 1; seed <= 3; ++seed) {
+    Random random(seed);
+    std::vector<ParticleState> other = start;
+    for (ParticleState& p : other) p.velocity = (1 + random.between(-6e-8, 6e-8)) * p.velocity;
+    const auto engine = make_engine(c);
+    engine->insert(other);
+    run_steps(*engine, 2000);
+    rounded = std::max(rounded, difference(averages(*engine).kinetic_energy, reference.kinetic_energy));
+  }
+  report("settling_kinetic_energy", reference.kinetic_energy);
+  report("settling_energy_difference_200_steps", early);
+  report("settling_energy_difference_2000_steps", late);
+  report("settling_energy_difference_of_a_rounded_start", rounded);
+  EXPECT_LT(early, 1e-5);
+  EXPECT_GT(rounded, 1e-4);
+  EXPECT_LT(late, 10 * rounded);
 }
 
 }  // namespace

@@ -161,6 +161,9 @@ struct Lists {
   std::vector<ChunkContacts<float>> contacts{1};
   std::unique_ptr<SolidIndex> index;
   SolidTables<float> tables;
+  std::vector<PreparedPrimitive> prepared_primitives;
+  double max_radius = kRadius;
+  uint32_t brute_force_up_to = kBruteForceUpTo;
   double period[3] = {0, 0, 0};
   double inverse_period[3] = {0, 0, 0};
 
@@ -176,7 +179,8 @@ struct Lists {
     }
     const Case c = case_with_floor();
     tables = make_solid_tables<float>({c.solid, {0, 1}}, 1);
-    index = make_brute_force_index(c.solid);
+    index = make_embree_index(c.solid);
+    for (const Primitive& p : c.solid.primitives) prepared_primitives.push_back(prepared(p));
   }
   void list_pair() { contacts[0].append(1, 2); }
   void list_floor() {
@@ -188,8 +192,8 @@ struct Lists {
     slot.primitive[5] = 0;
   }
   std::optional<MissingContact> check() const {
-    return find_missing_contact<float>(
-        {particles.data(), 3, 256, &contacts, kBox, period, inverse_period, kRadius, index.get(), &tables});
+    return find_missing_contact<float>({particles.data(), 3, 256, &contacts, kBox, period, inverse_period, max_radius,
+                                        index.get(), &tables, &prepared_primitives, brute_force_up_to});
   }
 };
 
@@ -254,6 +258,39 @@ TEST(Watch, a_contact_that_the_engines_lists_do_not_hold) {
   const RunError error = stopped(*moved, 1);
   expect_parts(error, {"touches particle", "at t = 2e-05 s", "the contact lists do not hold it", "please report"});
   expect_near(error, at, 2 * kRadius);
+}
+
+// A fault of the search itself, which the check by cells and index shares: cells too narrow for the particles, an index
+// that does not know the floor. Brute force has no part in either.
+TEST(Watch, brute_force_sees_what_a_faulty_grid_does_not) {
+  Lists lists;
+  lists.list_floor();
+  lists.particles[2].x = 0.002 + 1.9 * kRadius, lists.particles[2].z = lists.particles[1].z;
+  lists.max_radius = 1e-2 * kRadius;  // cells of a fiftieth of a diameter
+  lists.brute_force_up_to = 0;
+  EXPECT_FALSE(lists.check()) << "the fault is not one";
+  lists.brute_force_up_to = 2;  // three particles are more
+  EXPECT_FALSE(lists.check());
+  lists.brute_force_up_to = 3;
+  const auto missing = lists.check();
+  ASSERT_TRUE(missing);
+  EXPECT_EQ(missing->i, 1u);
+  EXPECT_EQ(missing->j, 2u);
+}
+
+TEST(Watch, brute_force_sees_what_a_faulty_index_does_not) {
+  Lists lists;
+  lists.list_pair();
+  Case without_floor = case_with_floor();
+  std::erase_if(without_floor.solid.primitives, [](const Primitive& p) { return p.wall == 0; });
+  lists.index = make_embree_index(without_floor.solid);
+  lists.brute_force_up_to = 0;
+  EXPECT_FALSE(lists.check()) << "the fault is not one";
+  lists.brute_force_up_to = kBruteForceUpTo;
+  const auto missing = lists.check();
+  ASSERT_TRUE(missing);
+  EXPECT_EQ(missing->i, 0u);
+  EXPECT_FALSE(missing->j);
 }
 
 // ---- energy and time step
