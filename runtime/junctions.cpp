@@ -13,26 +13,23 @@ constexpr double kSamePoint = 1e-3;  // of the reach
 }  // namespace
 
 Junctions::Junctions(const Solid& solid) {
-  std::vector<std::pair<const Segment*, double>> axes;  // and diameters
+  std::vector<const Segment*> axes;
   std::vector<double> lengths;
   for (const Primitive& p : solid.primitives) {
     const auto* axis = std::get_if<Segment>(&p.skeleton);
     if (!axis) continue;
-    axes.emplace_back(axis, 2 * p.radius);
+    axes.push_back(axis);
     lengths.push_back(norm(axis->b - axis->a));
   }
   if (axes.empty()) return;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
   reach_ = *middle / std::numbers::sqrt2;
-  for (const auto& [axis, diameter] : axes)
+  for (const Segment* axis : axes)
     for (const Vec3& end : {axis->a, axis->b}) {
-      if (const auto known = nearest_within(end, kSamePoint * reach_)) {
-        diameters_[*known] = std::max(diameters_[*known], diameter);
-        continue;
-      }
+      if (nearest_within(end, kSamePoint * reach_)) continue;
       cells_[cell_of(end)].push_back(points_.size());
-      points_.push_back(end), diameters_.push_back(diameter);
+      points_.push_back(end);
     }
 }
 

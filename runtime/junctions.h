@@ -1,6 +1,7 @@
 // The junctions of a network of fibres: the points where their axes end, each once.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -17,10 +18,12 @@ class Junctions {
 
   const std::vector<Vec3>& points() const { return points_; }  // in the order of the fibres
   double reach() const { return reach_; }                      // m; 0 without fibres
-  double diameter(size_t k) const { return diameters_[k]; }    // m, of the thickest fibre that ends at point k
+  // m: nearer to a junction than to the middle of a fibre, a quarter of the median axis.
+  double near() const { return reach_ * kNearOfReach; }
   std::optional<size_t> nearest(const Vec3& x) const;          // within reach()
 
  private:
+  static constexpr double kNearOfReach = std::numbers::sqrt2 / 4;
   struct Cell {
     int64_t x, y, z;
     bool operator==(const Cell&) const = default;
@@ -35,7 +38,6 @@ class Junctions {
 
   double reach_ = 0;
   std::vector<Vec3> points_;
-  std::vector<double> diameters_;                              // of each
   std::unordered_map<Cell, std::vector<size_t>, Hash> cells_;  // of edge reach_
 };
 

@@ -24,10 +24,6 @@ double round_width(double least) {
   return 10 * decade;
 }
 
-}  // namespace
-
-namespace {
-
 void write_times(const std::filesystem::path& path, const std::vector<ResidenceBin>& bins) {
   CsvWriter csv(path, {"from_s", "to_s", "mass_kg"});
   for (const ResidenceBin& bin : bins) csv.row(std::array{bin.from, bin.to, bin.mass});
@@ -170,7 +166,7 @@ std::vector<Retained> Residence::find_retained(const RunView& run) {
     if (p.position.z > settings_.entry || p.position.z < settings_.exit) continue;
     const auto junction = junctions.nearest(p.position);
     for (Retained* left : {&all, junction ? &at[*junction] : &elsewhere}) left->mass += p.mass, ++left->grains;
-    if (!junction || norm(p.position - at[*junction].at) > junctions.diameter(*junction) + p.radius) continue;
+    if (!junction || norm(p.position - at[*junction].at) > junctions.near()) continue;
     for (Retained* left : {&all, &at[*junction]}) left->near_mass += p.mass, ++left->near_grains;
   }
   summary_["retained_kg"] = all.mass, summary_["retained_grains"] = static_cast<uint64_t>(all.grains);

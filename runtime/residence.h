@@ -3,9 +3,9 @@
 //   DIR/residence.csv   from_s, to_s, mass_kg: the mass of those that went through, by the time that it took
 //   DIR/retained.csv    x_m, y_m, z_m, mass_kg, grains, near_kg, near_grains, along_fibres_kg, along_fibres_grains:
 //                       what is left in the layer at the run's end, by the nearest junction of fibres within half a
-//                       cell's edge. Each grain thus has a junction, also on the middle of a fibre; what really lies at
-//                       one is near it: its centre within a fibre's diameter (the thickest that ends there) and its own
-//                       radius. The rest lies along the fibres, or is on its way where the run ends while grains fall.
+//                       cell's edge. Each grain thus has a junction, also on the middle of a fibre; near it is what
+//                       is nearer to it than to the middle of a fibre (a quarter of the median axis). The rest lies
+//                       along the fibres, or is on its way where the run ends while grains fall.
 //   DIR/residence/      both as pictures (runtime/residence_pictures.h)
 //
 // A grain enters when its centre is first below the layer's top and is out when it is first below its bottom (or has

@@ -201,7 +201,7 @@ TEST(Residence, TellsWhatIsLeftAtANodeFromWhatIsLeftAlongFibres) {
   c.output.residence.entry = 0.18;
   Fall run(c);
   const Vec3 node{0.02, 0.02, 0.14}, other{0.04, 0.04, 0.14}, up{0, 0, 0.5 * fibre + grain};
-  const Vec3 along = unit(other - node), edge = (fibre + grain) * along;  // as far as "near" goes
+  const Vec3 along = unit(other - node), edge = 0.25 * norm(other - node) * along;  // as far as "near" goes
   const double mass = sphere(c, 0, node).mass;
   const std::vector<ParticleState> grains = {sphere(c, 0, node + up), sphere(c, 0, 0.5 * (node + other) + up),
                                              sphere(c, 0, node + 0.99 * edge + Vec3{0, 0, 1e-4}),
