@@ -20,7 +20,7 @@ class Junctions {
   double reach() const { return reach_; }                      // m; 0 without fibres
   // m: nearer to a junction than to the middle of a fibre, a quarter of the median axis.
   double near() const { return reach_ * kNearOfReach; }
-  std::optional<size_t> nearest(const Vec3& x) const;          // within reach()
+  std::optional<size_t> nearest(const Vec3& x) const;  // within reach()
 
  private:
   static constexpr double kNearOfReach = std::numbers::sqrt2 / 4;
