@@ -21,8 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Bytes a particle of the settled 400 um bed, lists and sort buffers included, at the peak of a rebuild: 349 were measured
-// (bench/README.md, "Memory"), and a fifth for flows with longer lists. The reference precision keeps everything in double.
+// Bytes a particle of the settled 400 um bed, lists and sort buffers included, at the peak of a rebuild: 349 were
+// measured (bench/README.md, "Memory"), and a fifth for flows with longer lists. The reference precision keeps
+// everything in double.
 constexpr double kBytesPerParticle = 420, kBytesPerReferenceParticle = 700;
 // The case's list, the engine's and its prepared tables, the search trees of the engine and of a fill: measured on
 // lattices of 10^4 to 10^5 cells.

@@ -42,9 +42,9 @@ TEST(RunCase, the_understood_case_runs_to_the_same_bits) {
   options.out = folder.path() / "second";
   options.engine.profile = true;  // which changes no bit, and prints:
   const RunResult second = run_case(read_case((folder.path() / "first" / "case.toml").string()), options);
-  for (const char* stage : {"near checks", "particle-particle contacts", "fibre and wall contacts", "integration",
-                            "rebuild: histories", "rebuild: sort", "rebuild: pair search",
-                            "rebuild: fibre and wall search", "the rest", "all"})
+  for (const char* stage :
+       {"near checks", "particle-particle contacts", "fibre and wall contacts", "integration", "rebuild: histories",
+        "rebuild: sort", "rebuild: pair search", "rebuild: fibre and wall search", "the rest", "all"})
     EXPECT_NE(second.profile.find(stage), std::string::npos) << stage << " in\n" << second.profile;
   EXPECT_EQ(read_summary(folder.path() / "first")["state_hash"], read_summary(folder.path() / "second")["state_hash"]);
 }
