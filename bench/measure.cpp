@@ -1,6 +1,5 @@
 #include "bench/measure.h"
 
-#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -11,6 +10,10 @@
 #include <fmt/format.h>
 
 #include "kernels/parallel.h"
+
+#if defined(__GLIBC__)  // known once a header of the standard library was read
+#include <malloc.h>
+#endif
 
 namespace scree::bench {
 namespace {

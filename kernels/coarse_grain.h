@@ -47,6 +47,9 @@ struct CoarseSample {
 template <size_t N>
 void deposit(const CoarseGrid& grid, std::span<const CoarseSample<N>> samples, std::span<double> sums);
 
+// The mean of a field (a value for each cell) as one sample at the cell's centre would spread over it.
+double seen_through_kernel(const CoarseGrid& grid, std::span<const double> field, size_t cell);
+
 inline constexpr size_t kGrainValues = 12, kStressValues = 6;
 extern template void deposit(const CoarseGrid&, std::span<const CoarseSample<kGrainValues>>, std::span<double>);
 extern template void deposit(const CoarseGrid&, std::span<const CoarseSample<kStressValues>>, std::span<double>);

@@ -32,36 +32,6 @@ double way_out(const SolidIndex& index, const Case& c, const Vec3& from, const V
   return -1;
 }
 
-double lucy(double q) { return q < 1 ? (1 + 3 * q) * (1 - q) * (1 - q) * (1 - q) : 0; }
-
-// The free share round a cell as the kernel sees it: a grain beside a fibre is spread over its inside, too, and only
-// what is spread alike can be divided by. Beyond the grid there is nothing.
-double free_share_through_kernel(const CoarseGrid& g, const std::vector<double>& free_share, size_t cell) {
-  const int at[] = {static_cast<int>(cell % g.cells[0]), static_cast<int>(cell / g.cells[0] % g.cells[1]),
-                    static_cast<int>(cell / g.cells[0] / g.cells[1])};
-  const double edge[] = {g.spacing.x, g.spacing.y, g.spacing.z};
-  struct Weighed {
-    int index;
-    double weight;
-  };
-  std::vector<Weighed> along[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const int reach = static_cast<int>(g.width / edge[axis]), n = g.cells[axis];
-    for (int k = at[axis] - reach; k <= at[axis] + reach; ++k) {
-      if (!g.wrap[axis] && (k < 0 || k >= n)) continue;
-      along[axis].push_back({((k % n) + n) % n, lucy(std::abs(k - at[axis]) * edge[axis] / g.width)});
-    }
-  }
-  double sum = 0, weights = 0;
-  for (const Weighed& z : along[2])
-    for (const Weighed& y : along[1])
-      for (const Weighed& x : along[0]) {
-        const double w = x.weight * y.weight * z.weight;
-        sum += w * free_share[(size_t(z.index) * g.cells[1] + y.index) * g.cells[0] + x.index], weights += w;
-      }
-  return sum / weights;
-}
-
 // By mass, over the grid's layers that lie in the lattice's section; m/s.
 double mean_speed(const Case& c, const CoarseGrid& grid, const AverageFields& f) {
   const Bounds& section = c.fibres.section;
@@ -82,7 +52,8 @@ void look_along(const CoarseGrid& grid, const AverageFields& f, const Vec3& star
   for (int k = 0; k < kPoints; ++k) {
     const size_t cell = grid.cell_of(start + (length * (k + 0.5) / kPoints) * way);
     probe.solid_fraction += f.solid_fraction[cell], ++probe.points;
-    probe.free += free_share_through_kernel(grid, f.free_share, cell);
+    // A grain beside a fibre is spread over its inside, too: only what is spread alike can be divided by.
+    probe.free += seen_through_kernel(grid, f.free_share, cell);
     if (std::isnan(f.velocity[cell].x)) continue;
     probe.speed += norm(f.velocity[cell]), probe.downward += dot(f.velocity[cell], down), ++probe.moving;
   }

@@ -181,7 +181,8 @@ void read_settings(TableReader& top, Case& c) {
   c.neighbour.skin = neighbour.number("skin", between(0, 1, "m (0: chosen by the program)"), 0);
   neighbour.finish();
   TableReader watch = top.table("watch");
-  c.watch.max_overlap = watch.number("max_overlap", positive(kMostOverlap, "of the radius"), c.watch.max_overlap);
+  c.watch.max_overlap = watch.number("max_overlap", positive(kMostOverlap, "of the radii' sum, at walls of the radius"),
+                                     c.watch.max_overlap);
   watch.finish();
   read_output(top.table("output"), c.output);
   read_checkpoint(top.table("checkpoint"), c.checkpoint);

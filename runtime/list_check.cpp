@@ -88,7 +88,9 @@ template <class Real>
 class Check {
  public:
   explicit Check(const ListCheckTask<Real>& task) : t_(task), positions_(wrapped(task)) {
-    if (task.count > task.brute_force_up_to) cells_.emplace(positions_, task.box, task.period, 2 * task.max_radius);
+    const uint64_t primitives = task.prepared ? task.prepared->size() : 0;
+    if (task.count > task.brute_force_up_to || task.count * primitives > kMostLooksAtSolid)
+      cells_.emplace(positions_, task.box, task.period, 2 * task.max_radius);
   }
 
   std::optional<MissingContact> run() const {

@@ -15,7 +15,8 @@
 
 namespace scree {
 
-inline constexpr uint32_t kBruteForceUpTo = 20000;  // particles: 0.4 G pairs, a second of a core
+inline constexpr uint32_t kBruteForceUpTo = 20000;          // particles: 0.4 G pairs, a second of a core
+inline constexpr uint64_t kMostLooksAtSolid = 400'000'000;  // particles times primitives, likewise
 
 // The particles as they were when the step took its forces, and the lists that it took them from.
 template <class Real>

@@ -202,7 +202,7 @@ void add_run_options(CLI::App& command, Arguments& a) {
   command.add_option("--check-lists", a.check_lists,
                      fmt::format("steps between proofs by a fresh search that no contact is missing from the lists "
                                  "(default {}; 0: none; 1: every step, for finding errors of the program); up to {} "
-                                 "particles by brute force, every pair and every fibre and wall looked at",
+                                 "particles by brute force, every pair and (of not too many) every fibre and wall",
                                  scree::EngineOptions{}.list_check_interval, scree::kBruteForceUpTo));
   command.add_flag("--force-memory", a.force_memory, "run though the estimate says that memory does not suffice");
   command.add_flag("--profile", a.profile, "print at the end where the time went, part by part of the step");
@@ -229,7 +229,7 @@ int command_line(int argc, char** argv) {
   run_command.add_option("--out", a.out, "results folder (default: results/<case>, or the next free name)");
   run_command.add_flag("--resume", a.resume,
                        "go on from the newest checkpoint in the results folder, if it has one\n(without --out: the "
-                       "newest of results/<case>, results/<case>-2, ...)");
+                       "last of results/<case>, results/<case>-2, ... before the first that is free)");
   add_run_options(run_command, a);
   CLI::App& resume_command = *app.add_subcommand("resume", "go on with an unfinished run from its newest checkpoint");
   resume_command.add_option("DIR", a.out, "its results folder")->required();

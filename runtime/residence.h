@@ -38,7 +38,8 @@ std::vector<ResidenceBin> bins_of(const ResidenceTimes& times, double width, dou
 // What is left at a junction.
 struct Retained {
   Vec3 at{};
-  double mass = 0, grains = 0;            // kg
+  double mass = 0;  // kg
+  double grains = 0;
   double near_mass = 0, near_grains = 0;  // of these, near it
   double mass_along_fibres() const { return mass - near_mass; }
   double grains_along_fibres() const { return grains - near_grains; }

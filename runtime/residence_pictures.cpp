@@ -136,7 +136,7 @@ void draw_retained(const std::filesystem::path& path, const Case& c, const std::
   picture.title = "mass left at each junction, mg";
   picture.note = fmt::format(
       "by the nearest junction, summed along the line of sight; in all {:.3g} mg, {:.3g} mg of "
-      "it along the fibres; white: none",
+      "it along the fibres or still falling; white: none",
       all / kMilligram, along / kMilligram);
   picture.scale = {"mass", "mg", 0, most > 0 ? most : 1, ColourMap::sequential, {}};
   for (size_t k = 0; k < 2; ++k) {

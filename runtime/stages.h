@@ -117,7 +117,9 @@ class Simulation {
       if (state_.records.empty()) break;
       try {
         o->finish(view());
-      } catch (const RunError& e) {
+      } catch (const std::bad_alloc&) {
+        throw;
+      } catch (const std::exception& e) {
         failed += (failed.empty() ? "" : "; and ") + std::string(e.what());
       }
     }

@@ -254,14 +254,14 @@ TEST_F(Render, ARunDrawsItselfAtItsMomentsAndEndsInTheSameBits) {
 }
 
 TEST_F(Render, ARunDrawsEveryQuantityOfItsFields) {
-  std::string more = "times = [0.02]\n";
+  std::string more = "times = [0.002]\n";
   for (const std::string& quantity : run_quantities())
     more += "[[output.picture]]\nname = \"" + quantity +
-            "\"\nsize = \"160x90\"\nsamples = 1\ntimes = [0.02]\ncolour = \"" + quantity + "\"\n";
+            "\"\nsize = \"160x90\"\nsamples = 1\ntimes = [0.002]\ncolour = \"" + quantity + "\"\n";
   const fs::path out = folder_.path() / "run";
   ASSERT_EQ(run(picturing(more), out).status, RunStatus::done);
   for (const char* named : {"speed", "coordination", "kind", "age", "wall_contacts", "mass", "diameter"})
-    EXPECT_EQ(read_png(out / "pictures" / (std::string(named) + "_0.020000.png")).width(), 160) << named;
+    EXPECT_EQ(read_png(out / "pictures" / (std::string(named) + "_0.002000.png")).width(), 160) << named;
   try {
     picturing("colour = \"temperature\"");
     ADD_FAILURE() << "grains have no temperature";

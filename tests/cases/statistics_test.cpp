@@ -1,5 +1,5 @@
-// What should not depend on how it was come by, within what chance makes of it: a discharge in mixed and in double
-// precision. Three seeds each; the bounds are Student's, from the scatter over seeds.
+// A discharge in mixed and in double precision, alike within what chance makes of it. Three seeds each; the bounds are
+// Student's, from the scatter over seeds.
 #include <cmath>
 
 #include "tests/cases/case_runs.h"

@@ -167,7 +167,8 @@ Allocated allocations_of_bed(int threads, int steps, int rebuilds) {
 }
 
 // 288 grains are two chunks. A rebuild asks for two scratch arrays a chunk in gathering histories and for what finds
-// the solid near its particles (which grows as it finds), and for a few of its own: 24 were seen.
+// the solid near its particles (which grows as it finds), and for a few of its own: 24 were seen, twice that are
+// allowed.
 TEST(Memory, IsNotAskedForInAStepOfAWarmBed) {
   for (const int threads : {1, 2}) {
     const Allocated a = allocations_of_bed(threads, 500, 10);

@@ -22,7 +22,7 @@ const residenceFacts = (r) => facts([
   ["Mean", isNumber(r.mean_s) && withUnit("time", r.mean_s)],
   ["10 %, half, 90 %", isNumber(r.median_s) && `within ${[r.p10_s, r.median_s, r.p90_s].map((t) => withUnit("time", t)).join(", ")}`],
   ["Left behind", isNumber(r.retained_kg) && `${withUnit("mass", r.retained_kg)} (${grouped(r.retained_grains)} grains), ${withUnit("mass", r.retained_at_no_junction_kg ?? 0)} of it at no junction`],
-  ["Of it", isNumber(r.retained_near_junctions_kg) && `${withUnit("mass", r.retained_near_junctions_kg)} on the junctions themselves${isNumber(r.retained_along_fibres_kg) ? `, ${withUnit("mass", r.retained_along_fibres_kg)} along the fibres between them` : ""}`],
+  ["Of it", isNumber(r.retained_near_junctions_kg) && `${withUnit("mass", r.retained_near_junctions_kg)} near the junctions (nearer than to a fibre's middle)${isNumber(r.retained_along_fibres_kg) ? `, ${withUnit("mass", r.retained_along_fibres_kg)} along the fibres between them or still falling` : ""}`],
 ]);
 
 const retainedTable = (run) => {
