@@ -79,24 +79,6 @@ std::vector<std::vector<uint32_t>> samples_of_slabs(const CoarseGrid& g, std::sp
   return slabs;
 }
 
-double seen_through_kernel(const CoarseGrid& g, std::span<const double> field, size_t cell) {
-  const int x = static_cast<int>(cell % g.cells[0]), y = static_cast<int>(cell / g.cells[0] % g.cells[1]),
-            z = static_cast<int>(cell / g.cells[0] / g.cells[1]);
-  const Reach along_x = reach_of(x + 0.5, g.width / g.spacing.x, g.cells[0], g.wrap[0]),
-              along_y = reach_of(y + 0.5, g.width / g.spacing.y, g.cells[1], g.wrap[1]),
-              along_z = reach_of(z + 0.5, g.width / g.spacing.z, g.cells[2], g.wrap[2]);
-  double mean = 0;
-  for (int c = 0; c < along_z.count; ++c)
-    for (int b = 0; b < along_y.count; ++b)
-      for (int a = 0; a < along_x.count; ++a) {
-        const size_t row =
-            size_t(wrapped(along_z.first + c, g.cells[2])) * g.cells[1] + wrapped(along_y.first + b, g.cells[1]);
-        mean += along_x.share[a] * along_y.share[b] * along_z.share[c] *
-                field[row * g.cells[0] + wrapped(along_x.first + a, g.cells[0])];
-      }
-  return mean;
-}
-
 template <size_t N>
 void deposit_one(const CoarseGrid& g, const CoarseSample<N>& sample, int slab, std::span<double> sums) {
   const Place at = place_of(g, sample.x);
@@ -123,6 +105,24 @@ void deposit_one(const CoarseGrid& g, const CoarseSample<N>& sample, int slab, s
 bool within(double x, double from, double edge, int cells) { return x >= from && x <= from + cells * edge; }
 
 }  // namespace
+
+double seen_through_kernel(const CoarseGrid& g, std::span<const double> field, size_t cell) {
+  const int x = static_cast<int>(cell % g.cells[0]), y = static_cast<int>(cell / g.cells[0] % g.cells[1]),
+            z = static_cast<int>(cell / g.cells[0] / g.cells[1]);
+  const Reach along_x = reach_of(x + 0.5, g.width / g.spacing.x, g.cells[0], g.wrap[0]),
+              along_y = reach_of(y + 0.5, g.width / g.spacing.y, g.cells[1], g.wrap[1]),
+              along_z = reach_of(z + 0.5, g.width / g.spacing.z, g.cells[2], g.wrap[2]);
+  double mean = 0;
+  for (int c = 0; c < along_z.count; ++c)
+    for (int b = 0; b < along_y.count; ++b)
+      for (int a = 0; a < along_x.count; ++a) {
+        const size_t row =
+            size_t(wrapped(along_z.first + c, g.cells[2])) * g.cells[1] + wrapped(along_y.first + b, g.cells[1]);
+        mean += along_x.share[a] * along_y.share[b] * along_z.share[c] *
+                field[row * g.cells[0] + wrapped(along_x.first + a, g.cells[0])];
+      }
+  return mean;
+}
 
 Vec3 CoarseGrid::centre(size_t cell) const {
   const size_t nx = cells[0], ny = cells[1];
