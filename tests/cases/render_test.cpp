@@ -260,8 +260,14 @@ TEST_F(Render, ARunDrawsEveryQuantityOfItsFields) {
             "\"\nsize = \"160x90\"\nsamples = 1\ntimes = [0.002]\ncolour = \"" + quantity + "\"\n";
   const fs::path out = folder_.path() / "run";
   ASSERT_EQ(run(picturing(more), out).status, RunStatus::done);
+  std::set<std::string> drawn;  // NAME_TIME.png, at the first step past the moment
+  for (const auto& entry : fs::directory_iterator(out / "pictures")) {
+    EXPECT_EQ(read_png(entry.path()).width(), 160) << entry.path();
+    const std::string file = entry.path().filename().string();
+    drawn.insert(file.substr(0, file.rfind('_')));
+  }
   for (const char* named : {"speed", "coordination", "kind", "age", "wall_contacts", "mass", "diameter"})
-    EXPECT_EQ(read_png(out / "pictures" / (std::string(named) + "_0.002000.png")).width(), 160) << named;
+    EXPECT_TRUE(drawn.contains(named)) << named;
   try {
     picturing("colour = \"temperature\"");
     ADD_FAILURE() << "grains have no temperature";
