@@ -47,13 +47,14 @@ const energyCheck = ({ closes, tolerance, energy_residual_share: energy, momentu
 };
 const smallShare = (share) => `${significant(100 * share, 2)} %`;
 
-const ledgerOf = (s) => s?.energy ?? s?.energy_ledger;
+const ledgerOf = (s) => s?.energy;
+const noLedger = () => h("li", {}, "Energy: watched for jumps, none stopped the run; a ledger of every term wants ", h("code", {}, "energy_ledger = true"), " under [output] and a third more time.");
 
 const checksOf = (run) => {
   const s = run.summary;
   if (!s) return null;
   const ledger = ledgerOf(s), terms = ledger && Object.fromEntries(Object.entries(ledger).filter(([key]) => /_J$/.test(key)));
-  return [h("ul", { class: "checks" }, particleCheck(s), massCheck(run, s), curveCheck(run, s), ledger && energyCheck(ledger)),
+  return [h("ul", { class: "checks" }, particleCheck(s), massCheck(run, s), curveCheck(run, s), ledger ? energyCheck(ledger) : s.status === "done" && noLedger()),
     ledger && [h("h3", {}, "Energy ledger, from the run's beginning to its end"), energyTable(terms)]];
 };
 
