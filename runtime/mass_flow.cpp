@@ -63,10 +63,11 @@ std::optional<SteadyFlow> steady_flow_in(const std::vector<FlowSample>& samples,
   return s;
 }
 
-std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& samples, double from, double to) {
+std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& samples, double from, double to,
+                                           double shortest) {
   if (samples.size() < kBins || !(to > from)) return std::nullopt;
   const double bin = (to - from) / kBins;
-  for (int length = kBins; length >= kFewestBins; --length) {
+  for (int length = kBins; length >= kFewestBins && length * bin >= shortest; --length) {
     // Of equally long windows the one with the highest rate: a trickle before or after the flow is steady too.
     std::optional<SteadyFlow> best;
     for (int first = 0; first + length <= kBins; ++first) {

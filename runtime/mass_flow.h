@@ -32,8 +32,10 @@ struct SteadyFlow {
 
 // The longest window in which the flow neither trends nor wanders: each fifth of it flows like the whole, within 8 %.
 // Of equally long ones the one with the highest rate. Rate: slope between the window's ends. Standard error: from the
-// scatter of the means of eight stretches. Nothing if there is no such window of at least a fifth of [from, to].
-std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& samples, double from, double to);
+// scatter of the means of eight stretches. Nothing if there is no such window of at least a fifth of [from, to] and of
+// at least `shortest` seconds: what a surge may last.
+std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& samples, double from, double to,
+                                           double shortest);
 
 // The same quantities for a window that the user named.
 std::optional<SteadyFlow> steady_flow_in(const std::vector<FlowSample>& samples, double from, double to);

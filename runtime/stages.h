@@ -146,9 +146,15 @@ class Simulation {
       const double end = r.end > r.start ? r.end : engine_->time();
       const OutputSettings& o = case_.output;
       return o.steady_to > 0 ? steady_flow_in(state_.samples, r.start + o.steady_from, r.start + o.steady_to)
-                             : find_steady_flow(state_.samples, r.start, end);
+                             : find_steady_flow(state_.samples, r.start, end, surge_time());
     }
     return std::nullopt;
+  }
+
+  // What gushes out when a lid opens is over in about the time that gravity has for the domain's height, s.
+  double surge_time() const {
+    const double g = norm(case_.gravity);
+    return g > 0 ? std::sqrt(std::abs(dot(case_.domain.max - case_.domain.min, case_.gravity)) / (g * g)) : 0;
   }
 
  private:
