@@ -68,9 +68,11 @@ void Domain<Real>::reserve(size_t wanted) {
   Array<Particle<Real>> now;
   const size_t capacity = wanted + 2 + wanted / 16;
   now.allocate(capacity);
+  next_.allocate(capacity, 33 * 64);
+  // Touched first by the threads that will walk them: on a machine of several sockets a page lies with its thread.
+  parallel_for_each(capacity, [&](size_t k) { now[k] = next_[k] = Particle<Real>{}; });
   std::copy(now_.data(), now_.data() + count_, now.data());
   now_.swap(now);
-  next_.allocate(capacity, 33 * 64);
 }
 
 // Two records that padding lanes name. A negative radius keeps every overlap with them negative (kernels/pair_pass.h).
