@@ -151,13 +151,13 @@ class Simulation {
     return std::nullopt;
   }
 
+ private:
   // What gushes out when a lid opens is over in about the time that gravity has for the domain's height, s.
   double surge_time() const {
     const double g = norm(case_.gravity);
     return g > 0 ? std::sqrt(std::abs(dot(case_.domain.max - case_.domain.min, case_.gravity)) / (g * g)) : 0;
   }
 
- private:
   // False: the stage had begun before the checkpoint that the run was resumed from.
   bool begin(const std::string& name, const std::string& kind) {
     const bool anew = !state_.begun;

@@ -2,8 +2,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernels/periodic.h"
-#include "runtime/csv_particles.h"
 #include "runtime/vtkhdf_reader.h"
 #include "tests/cases/case_runs.h"
 
@@ -39,38 +37,37 @@ Bed bed_in(const std::filesystem::path& frame) {
   return bed;
 }
 
-// The paper's grains (cases/olhx/common.toml) above a floor: `start` is the stage that brings them, then 0.1 s to
-// settle.
-Bed settled_bed(const std::string& start, double low, double high, int seed) {
+// The paper's grains (cases/olhx/common.toml) above a floor: `start` is the stage that brings them into the room
+// between two heights, then 0.1 s to settle.
+Bed settled_bed(const std::string& start, double low, double high) {
   const TemporaryFolder folder;
-  const auto text = fmt::format(R"(base = "{}"
+  const auto text =
+      fmt::format(R"(base = "{base}"
 title = "bed"
-seed = {}
 [domain]
-min = [{}, {}, -1e-3]
-max = [{}, {}, 40e-3]
+min = [-{half}, -{half}, -1e-3]
+max = [{half}, {half}, 40e-3]
 periodic = ["x", "y"]
 [[wall]]
 name = "floor"
 material = "steel"
 kind = "rectangle"
-min = [{}, {}, 0]
-max = [{}, {}, 0]
+min = [-{half}, -{half}, 0]
+max = [{half}, {half}, 0]
 [[region]]
 name = "room"
 shape = "box"
-min = [{}, {}, {}]
-max = [{}, {}, {}]
+min = [-{half}, -{half}, {low}]
+max = [{half}, {half}, {high}]
 [[stage]]
-{}
-count = {}
+{start}
+count = {grains}
 [[stage]]
 kind = "settle"
 time = 0.1
 )",
-                                case_path("olhx/common.toml"), seed, -kSide / 2, -kSide / 2, kSide / 2, kSide / 2,
-                                -kSide / 2, -kSide / 2, kSide / 2, kSide / 2, -kSide / 2, -kSide / 2, low, kSide / 2,
-                                kSide / 2, high, start, kGrains);
+                  fmt::arg("base", case_path("olhx/common.toml")), fmt::arg("half", kSide / 2), fmt::arg("low", low),
+                  fmt::arg("high", high), fmt::arg("start", start), fmt::arg("grains", kGrains));
   const auto path = folder.path() / "bed.toml";
   std::ofstream(path) << text;
   RunOptions options;
@@ -88,10 +85,9 @@ TEST(DirectStart, settles_to_the_solid_fraction_and_coordination_of_a_poured_bed
   const double fraction = 0.56;
   const double height = kGrains * 4 / 3.0 * std::numbers::pi * std::pow(kRadius, 3) / (fraction * kSide * kSide);
   const Bed placed = settled_bed(fmt::format("kind = \"fill\"\nregions = [\"room\"]\nsolid_fraction = {}", fraction),
-                                 0.1e-3, 0.1e-3 + 1.01 * height, 1);
-  const Bed poured =
-      settled_bed(fmt::format("kind = \"pour\"\nregion = \"room\"\nrate = {}\nvelocity = [0, 0, -0.5]", kPourRate),
-                  30e-3, 36e-3, 1);
+                                 0.1e-3, 0.1e-3 + 1.01 * height);
+  const Bed poured = settled_bed(
+      fmt::format("kind = \"pour\"\nregion = \"room\"\nrate = {}\nvelocity = [0, 0, -0.5]", kPourRate), 30e-3, 36e-3);
   std::printf("solid fraction %.4f placed, %.4f poured; coordination %.3f, %.3f\n", placed.solid_fraction,
               poured.solid_fraction, placed.coordination, poured.coordination);
   EXPECT_NEAR(placed.solid_fraction, poured.solid_fraction, 0.01);
