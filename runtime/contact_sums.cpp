@@ -32,15 +32,13 @@ ContactSums contact_sums(std::span<const ParticleState> particles, const Engine&
     sums.force[k] += force;
     add_product(sums.stress[k], -inverse_volume(particles[k].radius), branch, force);
   };
-  engine.visit_contacts_by_particles([&](size_t first, size_t last, std::span<const ContactState> contacts) {
-    for (const ContactState& k : contacts) {
-      add(k.i, k.point - particles[k.i].position, k.force);
-      ++(k.with_solid ? sums.wall_contacts : sums.coordination)[k.i];
-      if (k.with_solid || k.j < first || k.j >= last) continue;
-      // From j the point lies along the normal; its own coordinates may be those beside i's periodic image.
-      add(k.j, (particles[k.j].radius - 0.5 * k.overlap) * k.normal, -k.force);
-      ++sums.coordination[k.j];
-    }
+  engine.visit_contacts_by_particles([&](size_t first, size_t last, const ContactState& k) {
+    add(k.i, k.point - particles[k.i].position, k.force);
+    ++(k.with_solid ? sums.wall_contacts : sums.coordination)[k.i];
+    if (k.with_solid || k.j < first || k.j >= last) return;
+    // From j the point lies along the normal; its own coordinates may be those beside i's periodic image.
+    add(k.j, (particles[k.j].radius - 0.5 * k.overlap) * k.normal, -k.force);
+    ++sums.coordination[k.j];
   });
   return sums;
 }

@@ -293,17 +293,17 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
 }
 
 template <class Real>
-void Domain<Real>::find_contacts(size_t chunk, Contacts which, Across across, std::vector<ContactState>& found) const {
-  found.clear();
-  const auto add = [&](const TouchingContact& t) {
+template <class See>
+void Domain<Real>::visit_contacts_of(size_t chunk, Contacts which, Across across, const See& see) const {
+  const auto pass_on = [&](const TouchingContact& t) {
     const bool solid = t.skeleton >= 0;
     if (!solid && across == Across::once && t.j < chunk_begin(chunk)) return;  // the other chunk lists it too
-    found.push_back({t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force,
+    see(ContactState{t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force,
                      t.slip, t.elastic_energy});
   };
   const ChunkTask<Real> task = chunk_task(chunk, nullptr);
-  if (which == Contacts::all) visit_touching_pairs<Real>(task, contacts_[chunk], add);
-  visit_touching_solids<Real>(task, contacts_[chunk], add);
+  if (which == Contacts::all) visit_touching_pairs<Real>(task, contacts_[chunk], pass_on);
+  visit_touching_solids<Real>(task, contacts_[chunk], pass_on);
 }
 
 template <class Real>
@@ -313,18 +313,20 @@ void Domain<Real>::visit_contacts(const SeeContacts& see, Contacts which) const 
   std::vector<std::vector<ContactState>> found(std::min(kAtOnce, contacts_.size()));
   for (size_t first = 0; first < contacts_.size(); first += kAtOnce) {
     const size_t last = std::min(first + kAtOnce, contacts_.size());
-    parallel_for(last - first, [&](size_t k) { find_contacts(first + k, which, Across::once, found[k]); });
+    parallel_for(last - first, [&](size_t k) {
+      found[k].clear();
+      visit_contacts_of(first + k, which, Across::once, [&](const ContactState& c) { found[k].push_back(c); });
+    });
     for (size_t k = 0; k < last - first; ++k) see(found[k]);
   }
 }
 
 template <class Real>
-void Domain<Real>::visit_contacts_by_particles(const SeeContactsOf& see) const {
+void Domain<Real>::visit_contacts_by_particles(const SeeContactOf& see) const {
   if (!lists_valid_) return;
-  parallel_for(contacts_.size(), [&](size_t c) {
-    std::vector<ContactState> found;
-    find_contacts(c, Contacts::all, Across::from_each, found);
-    see(chunk_begin(c), chunk_end(c), found);
+  parallel_for(contacts_.size(), [&](size_t k) {
+    const size_t first = chunk_begin(k), last = chunk_end(k);
+    visit_contacts_of(k, Contacts::all, Across::from_each, [&](const ContactState& c) { see(first, last, c); });
   });
 }
 

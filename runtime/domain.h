@@ -47,7 +47,7 @@ class Domain final : public Engine {
   std::vector<TouchingPair> touching_pairs() const override;
   std::vector<ContactState> contacts(Contacts which) const override;
   void visit_contacts(const SeeContacts& see, Contacts which) const override;
-  void visit_contacts_by_particles(const SeeContactsOf& see) const override;
+  void visit_contacts_by_particles(const SeeContactOf& see) const override;
   bool knows_contacts() const override { return lists_valid_; }
   const std::vector<Insertion>& insertions() const override { return insertions_; }
 
@@ -77,7 +77,8 @@ class Domain final : public Engine {
 
   ChunkTask<Real> chunk_task(size_t c, Real* rows) const;
   enum class Across { once, from_each };  // pairs of two chunks: by the lower one, or by both
-  void find_contacts(size_t chunk, Contacts which, Across across, std::vector<ContactState>& found) const;
+  template <class See>
+  void visit_contacts_of(size_t chunk, Contacts which, Across across, const See& see) const;
   void advance_chunks();
   void add_closing();
   void add_profile(const ChunkOutcome& all);

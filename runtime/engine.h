@@ -176,8 +176,8 @@ class Engine {
   virtual void visit_contacts(const SeeContacts& see, Contacts which = Contacts::all) const = 0;
   // For sums by particle, on several threads at once: all contacts of particles first..last - 1, in the same pieces and
   // order for any number of threads. A contact with a particle of another piece is i's here, and comes there again.
-  using SeeContactsOf = std::function<void(size_t first, size_t last, std::span<const ContactState>)>;
-  virtual void visit_contacts_by_particles(const SeeContactsOf& see) const = 0;
+  using SeeContactOf = std::function<void(size_t first, size_t last, const ContactState&)>;
+  virtual void visit_contacts_by_particles(const SeeContactOf& see) const = 0;
 
   virtual const std::vector<Insertion>& insertions() const = 0;  // ascending
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -61,7 +62,7 @@ void FrameFiles::write(uint64_t step, double time, Fill fill) {
   make_folder(folder_);
   if (!frames_.empty() && frames_.back().step == step) frames_.pop_back();
   const Frame frame = frames_.emplace_back(Frame{step, time});
-  unforced_.push_back(path_of(frame));
+  settled_ = false;
   background_->submit([this, frame, fill = std::move(fill)] { write_now(frame, fill); });
 }
 
@@ -74,6 +75,7 @@ void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
     file.array("FieldData/step", std::span<const int64_t>(&step, 1));
     fill(file);
   });
+  force_to_disk(path);  // here, where nobody waits for the disk
   std::error_code error;
   if (const uintmax_t size = fs::file_size(path, error); !error) bytes_ += size;
   if (!written_.empty() && written_.back().step == frame.step) written_.pop_back();
@@ -92,12 +94,9 @@ void FrameFiles::write_series() const {
 
 void FrameFiles::settle() {
   background_->finish();
-  if (unforced_.empty()) return;
+  if (std::exchange(settled_, true)) return;
   if (!written_.empty()) write_series();
-  for (const fs::path& path : unforced_)
-    if (fs::exists(path)) force_to_disk(path);  // not there: it could not be written, and that was told
   sync_folder(folder_);
-  unforced_.clear();
 }
 
 }  // namespace scree

@@ -30,7 +30,7 @@ class FrameFiles {
   // is there already is replaced. Throws RunError for this or an earlier frame that could not be written.
   void write(uint64_t step, double time, Fill fill);
 
-  // Waits until all is written and forced to the disk. Throws RunError.
+  // Waits until all is written and on the disk. Throws RunError.
   void settle();
   // Removes what a killed run left beyond the frames that were loaded. write() does so before the first.
   void prepare();
@@ -52,8 +52,8 @@ class FrameFiles {
   VtkHdfType type_;
   Background* background_;
   bool prepared_ = false;
-  std::vector<Frame> frames_;                    // handed over for writing
-  std::vector<std::filesystem::path> unforced_;  // written, perhaps not yet on the disk
+  bool settled_ = true;        // the series and the folder are on the disk
+  std::vector<Frame> frames_;  // handed over for writing
 
   // The background thread's:
   std::vector<Frame> written_;

@@ -1,18 +1,13 @@
 #include "runtime/shuffled_deflate.h"
 
-#include <libdeflate.h>
+#include <isa-l/igzip_lib.h>
 
-#include <algorithm>
-#include <new>
+#include <limits>
+#include <stdexcept>
 
 namespace scree {
 
 namespace {
-
-constexpr int kLevel = 1;                // of 12
-constexpr double kWorthIt = 0.5;         // bytes left of a sample: more, and they are not worth the time
-constexpr uint64_t kSample = 4096;       // bytes, from the middle of a plane
-constexpr uint64_t kMostStored = 65535;  // bytes in a stored block
 
 // First bytes of all elements, then second bytes, ...
 template <size_t size>
@@ -36,47 +31,34 @@ void shuffle(const unsigned char* data, uint64_t elements, size_t size, unsigned
 
 }  // namespace
 
-void ShuffledDeflate::Free::operator()(libdeflate_compressor* c) const { libdeflate_free_compressor(c); }
-
-ShuffledDeflate::ShuffledDeflate() : compressor_(libdeflate_alloc_compressor(kLevel)) {
-  if (!compressor_) throw std::bad_alloc();
-  sample_.resize(libdeflate_deflate_compress_bound(compressor_.get(), kSample));
-}
-
-bool ShuffledDeflate::is_noise(const unsigned char* plane, uint64_t bytes) {
-  if (bytes <= kSample) return false;
-  const size_t left = libdeflate_deflate_compress(compressor_.get(), plane + (bytes - kSample) / 2, kSample,
-                                                  sample_.data(), sample_.size());
-  return static_cast<double>(left) > kWorthIt * static_cast<double>(kSample);
-}
-
-void ShuffledDeflate::store(std::span<const unsigned char> bytes) {
-  for (uint64_t from = 0; from < bytes.size(); from += kMostStored) {
-    const auto block = bytes.subspan(from, std::min(kMostStored, bytes.size() - from));
-    const auto low = static_cast<unsigned char>(block.size()), high = static_cast<unsigned char>(block.size() >> 8);
-    for (const unsigned byte : {0u, unsigned{low}, unsigned{high}, ~unsigned{low}, ~unsigned{high}})  // not the last
-      packed_.push_back(static_cast<unsigned char>(byte));
-    packed_.insert(packed_.end(), block.begin(), block.end());
-  }
-}
-
-// To the stream's end.
-void ShuffledDeflate::deflate(std::span<const unsigned char> bytes) {
+// To the end of what is packed. Independent of the planes before, and it ends at a whole byte.
+void ShuffledDeflate::deflate(std::span<const unsigned char> plane, bool last) {
+  constexpr size_t kStoredBlock = 65535, kBlockHeader = 5;  // bytes
+  constexpr size_t kFlush = 64;                             // bytes, more than what ends a plane
+  if (plane.size() > std::numeric_limits<uint32_t>::max()) throw std::length_error("a plane of more than 4 GiB");
   const size_t before = packed_.size();
-  packed_.resize(before + libdeflate_deflate_compress_bound(compressor_.get(), bytes.size()));
-  packed_.resize(before + libdeflate_deflate_compress(compressor_.get(), bytes.data(), bytes.size(),
-                                                      packed_.data() + before, packed_.size() - before));
+  packed_.resize(before + plane.size() + (plane.size() / kStoredBlock + 1) * kBlockHeader + kFlush);
+  work_.resize(ISAL_DEF_LVL1_DEFAULT);
+  isal_zstream stream;
+  isal_deflate_stateless_init(&stream);
+  stream.level = 1;
+  stream.level_buf = work_.data(), stream.level_buf_size = static_cast<uint32_t>(work_.size());
+  stream.next_in = const_cast<unsigned char*>(plane.data());  // it is only read
+  stream.avail_in = static_cast<uint32_t>(plane.size());
+  stream.next_out = packed_.data() + before, stream.avail_out = static_cast<uint32_t>(packed_.size() - before);
+  stream.flush = FULL_FLUSH;
+  stream.end_of_stream = last;
+  if (isal_deflate_stateless(&stream) != COMP_OK) throw std::runtime_error("ISA-L could not deflate an array");
+  packed_.resize(before + stream.total_out);
 }
 
 std::span<const unsigned char> ShuffledDeflate::pack(const unsigned char* data, uint64_t elements, size_t size) {
   shuffled_.resize(elements * size);
   shuffle(data, elements, size, shuffled_.data());
-  uint64_t noise = 0;
-  while (noise < shuffled_.size() && is_noise(shuffled_.data() + noise, elements)) noise += elements;
-  packed_ = {0x78, 0x01};
-  store(std::span(shuffled_).first(noise));
-  deflate(std::span(shuffled_).subspan(noise));
-  const uint32_t sum = libdeflate_adler32(1, shuffled_.data(), shuffled_.size());
+  packed_ = {0x78, 0x01};  // zlib's header: deflate, the fastest
+  for (size_t plane = 0; plane < size; ++plane)
+    deflate(std::span(shuffled_).subspan(plane * elements, elements), plane + 1 == size);
+  const uint32_t sum = isal_adler32(1, shuffled_.data(), shuffled_.size());
   for (const int shift : {24, 16, 8, 0}) packed_.push_back(static_cast<unsigned char>(sum >> shift));
   return packed_;
 }

@@ -2,34 +2,24 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
-struct libdeflate_compressor;
-
 namespace scree {
 
-// Shuffled, the lowest bytes of all numbers come first, the highest (sign and exponent) last. The low ones of a grain's
-// position or velocity are noise, on which deflate spends most of its time and gains nothing. They go in as stored
-// blocks, the rest is deflated by libdeflate: one zlib stream, which every reader takes. Layout: RFC 1950, RFC 1951.
+// Shuffled, the lowest bytes of all numbers come first, the highest (sign and exponent) last: planes. The low ones of a
+// grain's position or velocity are noise, the high ones are nearly the same for all. Each plane is deflated by itself,
+// by ISA-L, which stores one that does not shrink; together they are one zlib stream, which every reader takes.
+// Layout: RFC 1950, RFC 1951.
 class ShuffledDeflate {
  public:
-  ShuffledDeflate();  // throws std::bad_alloc
-
   // `data`: `elements` numbers of `size` bytes (1, 2, 4 or 8). The stream is good until the next call.
   std::span<const unsigned char> pack(const unsigned char* data, uint64_t elements, size_t size);
 
  private:
-  struct Free {
-    void operator()(libdeflate_compressor* c) const;
-  };
-  bool is_noise(const unsigned char* plane, uint64_t bytes);
-  void store(std::span<const unsigned char> bytes);
-  void deflate(std::span<const unsigned char> bytes);
+  void deflate(std::span<const unsigned char> plane, bool last);
 
-  std::unique_ptr<libdeflate_compressor, Free> compressor_;
-  std::vector<unsigned char> shuffled_, sample_, packed_;
+  std::vector<unsigned char> shuffled_, packed_, work_;
 };
 
 }  // namespace scree
