@@ -31,11 +31,11 @@ class Packing {
     sort_along_curve();
   }
 
-  PackingOutcome run(int max_iterations, const std::function<void()>& look) {
+  PackingOutcome run(int max_iterations, const std::function<void(const PackingOutcome&)>& look) {
     PackingOutcome outcome;
     find_neighbours();
     for (; outcome.iterations < max_iterations; ++outcome.iterations) {
-      look();
+      look(outcome);
       const Sweep s = sweep();
       outcome.worst_overlap = s.worst_overlap;
       outcome.confined = s.worst_overlap <= 0 && all_confined();
@@ -171,7 +171,7 @@ class Packing {
 }  // namespace
 
 PackingOutcome push_apart(std::span<PackedSphere> spheres, std::span<const PackedSphere> fixed, const Confine& confine,
-                          int max_iterations, const std::function<void()>& look) {
+                          int max_iterations, const std::function<void(const PackingOutcome&)>& look) {
   return Packing(spheres, fixed, confine).run(max_iterations, look);
 }
 

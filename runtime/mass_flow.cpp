@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace scree {
 
 namespace {
 
-constexpr int kBins = 40;  // of the stretch that is searched
+constexpr int kBins = 40;  // of the stretch that is searched, and of the window in it
 constexpr int kFewestBins = kBins / 5;
 constexpr int kParts = 5;                  // of a window, each of which must flow like the whole:
 constexpr double kSteadyTolerance = 0.08;  // of the mean; catches the surge when a lid opens, lets scatter pass
@@ -34,6 +36,23 @@ bool is_steady(const std::vector<FlowSample>& samples, double a, double b) {
     if (std::abs(rate_between(samples, a + k * part, a + (k + 1) * part) - mean) > kSteadyTolerance * mean)
       return false;
   return true;
+}
+
+// Where the surge inside [a, b] has died away: the start, in its first half, that makes the mean of what is left most
+// certain, sum (q - mean)^2 / n^2 over its n bins. At least `shortest` seconds stay.
+double end_of_transient(const std::vector<FlowSample>& samples, double a, double b, double shortest) {
+  const double bin = (b - a) / kBins;
+  double q[kBins];
+  for (int k = 0; k < kBins; ++k) q[k] = rate_between(samples, a + k * bin, a + (k + 1) * bin);
+  double start = a, least = std::numeric_limits<double>::infinity();
+  for (int first = 0; first <= kBins / 2 && (kBins - first) * bin >= shortest; ++first) {
+    const int n = kBins - first;
+    const double mean = std::accumulate(q + first, q + kBins, 0.0) / n;
+    double sum2 = 0;
+    for (int k = first; k < kBins; ++k) sum2 += (q[k] - mean) * (q[k] - mean);
+    if (sum2 / (n * n) < least) least = sum2 / (n * n), start = a + first * bin;
+  }
+  return start;
 }
 
 }  // namespace
@@ -76,7 +95,7 @@ std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& sample
       const auto s = steady_flow_in(samples, a, b);
       if (s && (!best || s->rate > best->rate)) best = s;
     }
-    if (best) return best;
+    if (best) return steady_flow_in(samples, end_of_transient(samples, best->from, best->to, shortest), best->to);
   }
   return std::nullopt;
 }

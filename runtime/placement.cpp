@@ -208,7 +208,7 @@ void place_stratified(std::vector<PackedSphere>& spheres, const FreeSpace& space
 
 std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Solid& solid,
                                 std::span<const ParticleState> present, uint64_t stream,
-                                const std::function<void()>& look) {
+                                const std::function<void(const FillProgress&)>& look) {
   ParticleSource source(c, stage.mixture, c.seed, stream);
   Random random(c.seed, stream + 1000);
   std::vector<ParticleState> placed;
@@ -221,10 +221,14 @@ std::vector<ParticleState> fill(const Case& c, const FillStage& stage, const Sol
                                                   stage.count - placed.size(), source);
     std::vector<PackedSphere> spheres(share.size());
     for (size_t k = 0; k < share.size(); ++k) spheres[k].radius = share[k].radius;
-    place_stratified(spheres, space, random, look);
-    PackingOutcome outcome = push_apart(
+    FillProgress progress{c.regions[r].name, share.size()};
+    place_stratified(spheres, space, random, [&] { look(progress); });
+    const PackingOutcome outcome = push_apart(
         spheres, fixed, [&](const Vec3& x, double radius) { return space.confine(x, radius); }, kPackingIterations,
-        look);
+        [&](const PackingOutcome& so_far) {
+          progress.sweeps = so_far.iterations, progress.worst_overlap = so_far.worst_overlap;
+          look(progress);
+        });
     if (outcome.worst_overlap > 0 || !outcome.confined)
       throw RunError(fmt::format(
           "region '{}' cannot hold {} particles without overlap (solid_fraction {}; after {} iterations the worst "

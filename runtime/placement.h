@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "geometry/closest_point.h"
@@ -36,12 +37,20 @@ class FreeSpace {
   std::unique_ptr<SolidIndex> index_;
 };
 
+// How far filling is: in which region, and how its particles are being pushed apart.
+struct FillProgress {
+  std::string region;
+  size_t particles = 0;
+  int sweeps = 0;            // 0: they are still being thrown in
+  double worst_overlap = 0;  // share of a radius, at the last sweep
+};
+
 // A dense random packing: regions in order, each up to the stage's solid fraction of its free space, until mass or
 // count is reached. Throws RunError if they do not fit.
 // `look` is called now and then, as filling can take minutes: it may throw to give up.
 std::vector<ParticleState> fill(
     const Case& c, const FillStage& stage, const Solid& solid, std::span<const ParticleState> present, uint64_t stream,
-    const std::function<void()>& look = [] {});
+    const std::function<void(const FillProgress&)>& look = [](const FillProgress&) {});
 
 // One pour: owes what the rate has brought, places what finds room.
 class Pour {

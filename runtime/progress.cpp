@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/placement.h"
+
 namespace scree {
 
 std::string duration_text(double s) {
@@ -19,19 +21,38 @@ void Progress::begin(const std::string& stage) {
   stage_start_ = Clock::now();
 }
 
-void Progress::update(double time, size_t particles, double particle_steps, double done) {
+bool Progress::is_due(double& since) {
   const auto now = Clock::now();
-  const double since = std::chrono::duration<double>(now - last_).count();
-  if (!shown_ || since < 0.5) return;
-  const double rate = (particle_steps - last_particle_steps_) / since;
-  last_ = now, last_particle_steps_ = particle_steps;
-  const double elapsed = std::chrono::duration<double>(now - stage_start_).count();
-  const std::string eta =
-      done > 1e-3 ? fmt::format("{:3.0f} %, {} left", 100 * done, duration_text(elapsed * (1 - done) / done)) : "";
-  fmt::print(stderr, "\r\033[K{:<8} t = {:.4f} s  {} particles  {:.2f} M particle-steps/s  {}", stage_, time, particles,
-             rate / 1e6, eta);
+  since = std::chrono::duration<double>(now - last_).count();
+  if (!shown_ || since < 0.5) return false;
+  last_ = now;
+  return true;
+}
+
+void Progress::draw(const std::string& line) {
+  fmt::print(stderr, "\r\033[K{:<8} {}", stage_, line);
   std::fflush(stderr);
   drawn_ = true;
+}
+
+void Progress::update(double time, size_t particles, double particle_steps, double done) {
+  double since = 0;
+  if (!is_due(since)) return;
+  const double rate = (particle_steps - last_particle_steps_) / since;
+  last_particle_steps_ = particle_steps;
+  const double elapsed = std::chrono::duration<double>(last_ - stage_start_).count();
+  const std::string eta =
+      done > 1e-3 ? fmt::format("{:3.0f} %, {} left", 100 * done, duration_text(elapsed * (1 - done) / done)) : "";
+  draw(fmt::format("t = {:.4f} s  {} particles  {:.2f} M particle-steps/s  {}", time, particles, rate / 1e6, eta));
+}
+
+void Progress::update(const FillProgress& fill) {
+  double since = 0;
+  if (!is_due(since)) return;
+  const std::string apart = fill.sweeps == 0 ? "being placed"
+                                             : fmt::format("pushed apart {} times, worst overlap {:.2g} % of a radius",
+                                                           fill.sweeps, 100 * fill.worst_overlap);
+  draw(fmt::format("region '{}': {} particles, {}", fill.region, fill.particles, apart));
 }
 
 void Progress::clear() {

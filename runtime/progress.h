@@ -6,6 +6,8 @@
 
 namespace scree {
 
+struct FillProgress;
+
 class Progress {
  public:
   explicit Progress(bool shown) : shown_(shown) {}
@@ -15,9 +17,13 @@ class Progress {
   void begin(const std::string& stage);
   // At most a few lines a second. `done` is the stage's share, 0..1 (negative: not known).
   void update(double time, size_t particles, double particle_steps, double done);
+  void update(const FillProgress& fill);
   void clear();
 
  private:
+  bool is_due(double& since);  // since the last line, s
+  void draw(const std::string& line);
+
   using Clock = std::chrono::steady_clock;
   bool shown_, drawn_ = false;
   std::string stage_;

@@ -215,7 +215,10 @@ class Simulation {
   void run_stage(const std::string& name, const FillStage& s) {
     begin(name, "fill");
     const std::vector<ParticleState> placed =
-        fill(case_, s, solid_, engine_->particles(), stage_stream(), [&] { heed_stop(); });
+        fill(case_, s, solid_, engine_->particles(), stage_stream(), [&](const FillProgress& so_far) {
+          heed_stop();
+          progress_.update(so_far);
+        });
     engine_->insert(placed);
     log_->info("placed {} particles", placed.size());
   }
