@@ -27,8 +27,8 @@ struct PackingOutcome {
 };
 
 // Pushes `spheres` apart; `fixed` ones do not move. Ends when nothing overlaps or after `max_iterations`. At solid
-// fractions up to about 0.6 this converges; the denser, the longer. `look` is called before each sweep, with what came of
-// those before it, and may throw to give up.
+// fractions up to about 0.6 this converges; the denser, the longer. `look` is called before each sweep, with what came
+// of those before it, and may throw to give up.
 PackingOutcome push_apart(
     std::span<PackedSphere> spheres, std::span<const PackedSphere> fixed, const Confine& confine, int max_iterations,
     const std::function<void(const PackingOutcome&)>& look = [](const PackingOutcome&) {});

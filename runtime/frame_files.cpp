@@ -94,9 +94,10 @@ void FrameFiles::write_series() const {
 
 void FrameFiles::settle() {
   background_->finish();
-  if (std::exchange(settled_, true)) return;
+  if (settled_) return;
   if (!written_.empty()) write_series();
   sync_folder(folder_);
+  settled_ = true;
 }
 
 }  // namespace scree

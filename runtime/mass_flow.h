@@ -33,8 +33,8 @@ struct SteadyFlow {
 // The longest window in which the flow neither trends nor wanders: each fifth of it flows like the whole, within 8 %.
 // Of equally long ones the one with the highest rate. What is left of a surge at its beginning is cut off where that
 // makes the mean most certain, at most half of it (MSER: White, Simulation 69 (1997) 323). Rate: slope between the
-// window's ends. Standard error: from the scatter of the means of eight stretches. Nothing if there is no such window of
-// at least a fifth of [from, to] and of at least `shortest` seconds: what a surge may last.
+// window's ends. Standard error: from the scatter of the means of eight stretches. Nothing if there is no such window
+// of at least a fifth of [from, to] and of at least `shortest` seconds: what a surge may last.
 std::optional<SteadyFlow> find_steady_flow(const std::vector<FlowSample>& samples, double from, double to,
                                            double shortest);
 
