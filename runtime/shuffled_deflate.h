@@ -9,7 +9,8 @@ namespace scree {
 
 // Shuffled, the lowest bytes of all numbers come first, the highest (sign and exponent) last: planes. The low ones of a
 // grain's position or velocity are noise, the high ones are nearly the same for all. Each plane is deflated by itself,
-// by ISA-L, which stores one that does not shrink; together they are one zlib stream, which every reader takes.
+// by ISA-L, which stores one that does not shrink; together they are one zlib stream, which every reader takes. The
+// same numbers give the same bytes.
 // Layout: RFC 1950, RFC 1951.
 class ShuffledDeflate {
  public:
@@ -19,7 +20,7 @@ class ShuffledDeflate {
  private:
   void deflate(std::span<const unsigned char> plane, bool last);
 
-  std::vector<unsigned char> shuffled_, packed_, work_;
+  std::vector<unsigned char> shuffled_, packed_;
 };
 
 }  // namespace scree
