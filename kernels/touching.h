@@ -1,7 +1,7 @@
 // The contacts that touch now, one by one, with their forces: for averages, pictures and checks, not for the step.
 //
-// Evaluated by the laws and passes of the step, one lane wide, on the records as they are (positions of now, velocities
-// half a step behind): the forces are those that the next step will apply. Nothing is written.
+// Evaluated by the laws and passes of the step, on the records as they are (positions of now, velocities half a step
+// behind): the forces are those that the next step will apply. Nothing is written.
 #pragma once
 
 #include <functional>

@@ -11,6 +11,7 @@ namespace scree {
 
 namespace {
 
+constexpr size_t kGrainsAtOnce = 1 << 18;  // 120 B each
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 using GrainSample = CoarseSample<kGrainValues>;
@@ -35,14 +36,14 @@ StressSample sample_of(const Vec3& point, const Vec3& branch, const Vec3& f) {
            0.5 * (f.x * l.z + f.z * l.x)}};
 }
 
-std::vector<StressSample> stress_samples(std::span<const ContactState> contacts,
-                                         const std::vector<ParticleState>& particles) {
+std::vector<StressSample> stress_samples(std::span<const ContactState> contacts, const Engine& engine) {
   std::vector<StressSample> samples;
   samples.reserve(2 * contacts.size());
   for (const ContactState& k : contacts) {
     const double inside = k.with_solid ? k.overlap : 0.5 * k.overlap;  // how deep the point lies in the particle
-    samples.push_back(sample_of(k.point, (particles[k.i].radius - inside) * k.normal, k.force));
-    if (!k.with_solid) samples.push_back(sample_of(k.point, -(particles[k.j].radius - inside) * k.normal, -k.force));
+    samples.push_back(sample_of(k.point, (engine.particle(k.i).radius - inside) * k.normal, k.force));
+    if (!k.with_solid)
+      samples.push_back(sample_of(k.point, -(engine.particle(k.j).radius - inside) * k.normal, -k.force));
   }
   return samples;
 }
@@ -115,13 +116,17 @@ AverageSums::AverageSums(const CoarseGrid& grid)
     : grid_(grid), grains_(grid.size() * kGrainValues, 0.0), stresses_(grid.size() * kStressValues, 0.0) {}
 
 void AverageSums::add(const Engine& engine, const Case& c) {
-  const std::vector<ParticleState> particles = engine.particles();
-  std::vector<GrainSample> grains;
-  for (const ParticleState& p : particles)
-    if (grid_.holds(p.position)) grains.push_back(sample_of(p));
+  std::vector<GrainSample> grains;  // some at a time
+  for (const ParticleState& p : each_particle(engine)) {
+    if (!grid_.holds(p.position)) continue;
+    grains.push_back(sample_of(p));
+    if (grains.size() < kGrainsAtOnce) continue;
+    deposit<kGrainValues>(grid_, grains, grains_);
+    grains.clear();
+  }
   deposit<kGrainValues>(grid_, grains, grains_);
   engine.visit_contacts([&](std::span<const ContactState> contacts) {
-    std::vector<StressSample> stresses = stress_samples(contacts, particles);
+    std::vector<StressSample> stresses = stress_samples(contacts, engine);
     wrap_into(c, stresses);
     deposit<kStressValues>(grid_, stresses, stresses_);
   });

@@ -2,21 +2,23 @@
 
 #include <numbers>
 
+#include "kernels/parallel.h"
+
 namespace scree {
 
 namespace {
 
 using Stress = std::array<float, 6>;
 
-// s += scale sym(v (x) w)
-void add_product(Stress& s, double scale, const Vec3& v, const Vec3& w) {
+// s += sym(v (x) w)
+void add_product(Stress& s, const Vec3& v, const Vec3& w) {
   const double sum[] = {v.x * w.x,
                         v.y * w.y,
                         v.z * w.z,
                         0.5 * (v.x * w.y + v.y * w.x),
                         0.5 * (v.y * w.z + v.z * w.y),
                         0.5 * (v.x * w.z + v.z * w.x)};
-  for (int k = 0; k < 6; ++k) s[k] += static_cast<float>(scale * sum[k]);
+  for (int k = 0; k < 6; ++k) s[k] += static_cast<float>(sum[k]);
 }
 
 double inverse_volume(double radius) { return 3 / (4 * std::numbers::pi * radius * radius * radius); }
@@ -30,7 +32,7 @@ ContactSums contact_sums(std::span<const ParticleState> particles, const Engine&
                    std::vector<Stress>(n)};
   const auto add = [&](size_t k, const Vec3& branch, const Vec3& force) {
     sums.force[k] += force;
-    add_product(sums.stress[k], -inverse_volume(particles[k].radius), branch, force);
+    add_product(sums.stress[k], branch, force);
   };
   engine.visit_contacts_by_particles([&](size_t first, size_t last, const ContactState& k) {
     add(k.i, k.point - particles[k.i].position, k.force);
@@ -39,6 +41,9 @@ ContactSums contact_sums(std::span<const ParticleState> particles, const Engine&
     // From j the point lies along the normal; its own coordinates may be those beside i's periodic image.
     add(k.j, (particles[k.j].radius - 0.5 * k.overlap) * k.normal, -k.force);
     ++sums.coordination[k.j];
+  });
+  parallel_for_each(n, [&](size_t k) {
+    for (float& s : sums.stress[k]) s *= static_cast<float>(-inverse_volume(particles[k].radius));
   });
   return sums;
 }

@@ -47,6 +47,7 @@ class Domain final : public Engine {
   std::vector<TouchingPair> touching_pairs() const override;
   std::vector<ContactState> contacts(Contacts which) const override;
   void visit_contacts(const SeeContacts& see, Contacts which) const override;
+  ParticleState particle(size_t k) const override { return state(k); }
   void visit_contacts_by_particles(const SeeContactOf& see) const override;
   bool knows_contacts() const override { return lists_valid_; }
   const std::vector<Insertion>& insertions() const override { return insertions_; }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -155,7 +156,8 @@ class Engine {
 
   // Sum of f over all particles; the same bits for any number of threads.
   virtual double sum(const std::function<double(const ParticleState&)>& f) const = 0;
-  virtual std::vector<ParticleState> particles() const = 0;  // in storage order
+  virtual ParticleState particle(size_t k) const = 0;        // k < count(), in storage order
+  virtual std::vector<ParticleState> particles() const = 0;  // a copy of all: a third of what the engine holds
   virtual uint64_t state_hash() const = 0;  // of ids, positions, velocities, spins; independent of storage order
 
   // Contacts in the lists that touch now, for tests and averages: (id, id, overlap m).
@@ -181,6 +183,12 @@ class Engine {
 
   virtual const std::vector<Insertion>& insertions() const = 0;  // ascending
 };
+
+// The particles in storage order, each made as it is looked at: for what goes through them once.
+inline auto each_particle(const Engine& engine) {
+  return std::views::iota(size_t{0}, engine.count()) |
+         std::views::transform([&engine](size_t k) { return engine.particle(k); });
+}
 
 std::unique_ptr<Engine> make_engine(const Case& c, const EngineOptions& options = {});
 

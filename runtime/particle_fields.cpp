@@ -145,13 +145,13 @@ ParticleSnapshot::ParticleSnapshot(const Case& c, const Engine& engine, const st
     if (wanted(field)) columns_.push_back(field.make(s, field.name));
 }
 
-void ParticleSnapshot::write(VtkHdfFile& file) const {
-  const Column& at = columns_.front();
-  write_vertices(file, at.type, at.values.data(), at.size() / 3);
-  for (size_t k = 1; k < columns_.size(); ++k) {
-    const Column& c = columns_[k];
-    file.array("PointData/" + c.name, c.type, c.values.data(), c.size(), c.components);
-  }
+std::vector<PackedArray> ParticleSnapshot::packed() const {
+  const VertexCells cells(columns_.front().size() / 3);
+  std::vector<PlainArray> arrays = cells.arrays();
+  for (const Column& c : columns_)
+    arrays.push_back(plain_array(&c == &columns_.front() ? c.name : "PointData/" + c.name, c.type, c.values.data(),
+                                 c.size(), c.components));
+  return scree::packed(arrays);
 }
 
 }  // namespace scree

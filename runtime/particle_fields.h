@@ -21,7 +21,7 @@ struct ParticleFieldForm {
 };
 std::vector<ParticleFieldForm> particle_field_forms();
 
-// A copy of a moment, as it will be written by another thread. SI units, numbers of single precision, in the engine's
+// A copy of a moment. SI units, numbers of single precision, in the engine's
 // order of storage:
 //   Points             m; double where single precision would move a particle by more than 1e-4 of its radius
 //   id, kind           kinds count in the case's order, from 0
@@ -33,7 +33,7 @@ std::vector<ParticleFieldForm> particle_field_forms();
 class ParticleSnapshot {
  public:
   ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& fields);
-  void write(VtkHdfFile& file) const;
+  std::vector<PackedArray> packed() const;  // the arrays of a field file, packed on all threads
 
   // Values of the field `name` as they are written, row after row.
   struct Column {

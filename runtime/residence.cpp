@@ -162,7 +162,7 @@ std::vector<Retained> Residence::find_retained(const RunView& run) {
   std::vector<Retained> at;
   for (const Vec3& point : junctions.points()) at.push_back({.at = point});
   Retained all, elsewhere;
-  for (const ParticleState& p : run.engine.particles()) {
+  for (const ParticleState& p : each_particle(run.engine)) {
     if (p.position.z > settings_.entry || p.position.z < settings_.exit) continue;
     const auto junction = junctions.nearest(p.position);
     for (Retained* left : {&all, junction ? &at[*junction] : &elsewhere}) left->mass += p.mass, ++left->grains;

@@ -97,9 +97,8 @@ double component(const Vec3& v, int c) { return c == 0 ? v.x : c == 1 ? v.y : v.
 
 }  // namespace
 
-void write_particles_vtp(const std::filesystem::path& path, std::span<const ParticleState> p) {
+void write_particles_vtp(const std::filesystem::path& path, size_t n, const ParticleAt& p) {
   OutputFile file(path);
-  const size_t n = p.size();
   const char* order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
   file.write(
       fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"{}\" "
@@ -108,14 +107,14 @@ void write_particles_vtp(const std::filesystem::path& path, std::span<const Part
                   "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
                   "<PointData Scalars=\"radius\" Vectors=\"velocity\">\n",
                   order, n, n));
-  write_array<float>(file, "radius", 1, n, [&](size_t k, int) { return p[k].radius; });
-  write_array<float>(file, "velocity", 3, n, [&](size_t k, int c) { return component(p[k].velocity, c); });
-  write_array<float>(file, "angular_velocity", 3, n, [&](size_t k, int c) { return component(p[k].spin, c); });
-  write_array<float>(file, "mass", 1, n, [&](size_t k, int) { return p[k].mass; });
-  write_array<int64_t>(file, "id", 1, n, [&](size_t k, int) { return p[k].id; });
-  write_array<int32_t>(file, "kind", 1, n, [&](size_t k, int) { return p[k].kind; });
+  write_array<float>(file, "radius", 1, n, [&](size_t k, int) { return p(k).radius; });
+  write_array<float>(file, "velocity", 3, n, [&](size_t k, int c) { return component(p(k).velocity, c); });
+  write_array<float>(file, "angular_velocity", 3, n, [&](size_t k, int c) { return component(p(k).spin, c); });
+  write_array<float>(file, "mass", 1, n, [&](size_t k, int) { return p(k).mass; });
+  write_array<int64_t>(file, "id", 1, n, [&](size_t k, int) { return p(k).id; });
+  write_array<int32_t>(file, "kind", 1, n, [&](size_t k, int) { return p(k).kind; });
   file.write("</PointData>\n<Points>\n");
-  write_array<double>(file, "Points", 3, n, [&](size_t k, int c) { return component(p[k].position, c); });
+  write_array<double>(file, "Points", 3, n, [&](size_t k, int c) { return component(p(k).position, c); });
   file.write("</Points>\n<Verts>\n");
   write_array<int64_t>(file, "connectivity", 1, n, [](size_t k, int) { return k; });
   write_array<int64_t>(file, "offsets", 1, n, [](size_t k, int) { return k + 1; });
@@ -123,10 +122,9 @@ void write_particles_vtp(const std::filesystem::path& path, std::span<const Part
   file.finish();
 }
 
-void write_neighbourhood_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles,
-                             const Vec3& where, double reach) {
+void write_neighbourhood_vtp(const std::filesystem::path& path, const Engine& engine, const Vec3& where, double reach) {
   std::vector<ParticleState> near;
-  for (const ParticleState& p : particles)
+  for (const ParticleState& p : each_particle(engine))
     if (!(norm(p.position - where) > reach)) near.push_back(p);  // with those whose position is not a number
   write_particles_vtp(path, near);
 }

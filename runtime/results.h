@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,10 +51,13 @@ class OutputFile {
 
 // Particles as VTK PolyData (.vtp, XML): points with radius, velocity, angular_velocity, id, kind, mass. Opens in
 // ParaView (Glyph: sphere, scale by radius). Arrays are base64 in place, uncompressed, as OVITO's reader wants them.
-void write_particles_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles);
+using ParticleAt = std::function<ParticleState(size_t)>;
+void write_particles_vtp(const std::filesystem::path& path, size_t count, const ParticleAt& particle);
+inline void write_particles_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles) {
+  write_particles_vtp(path, particles.size(), [&](size_t k) { return particles[k]; });
+}
 
 // The particles with their centres within `reach` (m) of `where`, the same way.
-void write_neighbourhood_vtp(const std::filesystem::path& path, std::span<const ParticleState> particles,
-                             const Vec3& where, double reach);
+void write_neighbourhood_vtp(const std::filesystem::path& path, const Engine& engine, const Vec3& where, double reach);
 
 }  // namespace scree

@@ -230,9 +230,12 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     if (!result.warning.empty()) log->warn(result.warning);
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
     if (failed_at)
-      write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine().particles(), *failed_at,
+      write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine(), *failed_at,
                               kFailureReach * largest_radius(c));
-    if (c.output.final_vtk) write_particles_vtp(options.out / "particles.vtp", simulation->engine().particles());
+    if (c.output.final_vtk) {
+      const Engine& engine = simulation->engine();
+      write_particles_vtp(options.out / "particles.vtp", engine.count(), [&](size_t k) { return engine.particle(k); });
+    }
     log->info("{}", text(result.status));
   } catch (const std::bad_alloc&) {
     fail(result.message.empty() ? kOutOfMemory : result.message + "; and no memory is left for the results");

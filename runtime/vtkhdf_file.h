@@ -5,7 +5,7 @@
 //     PointData/NAME   one value per point; N x 3 is a vector, N x 6 a tensor xx yy zz xy yz xz
 //     CellData/NAME, FieldData/NAME
 //
-// Version 1.0 has these two types only. Arrays are in pieces of some 65,000 rows, shuffled and gzipped: any HDF5 reader
+// Version 1.0 has these two types only. Arrays are in pieces of some 16,000 rows, shuffled and gzipped: any HDF5 reader
 // undoes that. Layout: https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format
 #pragma once
 
@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/hdf5_file.h"
+#include "runtime/packed_array.h"
 
 namespace scree {
 
@@ -32,12 +32,12 @@ class VtkHdfFile {
   void attribute(const std::string& name, std::span<const int64_t> values);
   void attribute(const std::string& name, std::span<const double> values);
 
-  // `name` within /VTKHDF, "PointData/velocity". `components` 0: a list; else rows of so many values.
+  // Names are within /VTKHDF: "PointData/velocity".
+  void array(const PackedArray& array);
   template <class T>
   void array(const std::string& name, std::span<const T> values, uint64_t components = 0) {
-    array(name, element_type<T>(), values.data(), values.size(), components);
+    array(packed(plain_array(name, values, components)));
   }
-  void array(const std::string& name, const ElementType& type, const void* values, uint64_t count, uint64_t components);
 
   // Point data of an image: a value (components 1) or a row of values for each point, x fastest.
   void image(const std::string& name, std::span<const float> values, const std::array<int, 3>& points,
@@ -47,9 +47,6 @@ class VtkHdfFile {
 
  private:
   struct State;
-  // `size`: of the array, slowest first; the first is cut into pieces of `piece_rows`.
-  void blocks(const std::string& name, const ElementType& type, const void* values, std::span<const uint64_t> size,
-              uint64_t piece_rows);
   std::unique_ptr<State> state_;
 };
 
@@ -65,7 +62,16 @@ struct VtkGrid {
 };
 void write_grid(VtkHdfFile& file, const VtkGrid& grid);
 
-// The same for points that are cells of their own, with coordinates of float or double.
-void write_vertices(VtkHdfFile& file, const ElementType& coordinate, const void* points, uint64_t count);
+// The cells of `points` points that are cells of their own.
+class VertexCells {
+ public:
+  explicit VertexCells(uint64_t points);
+  std::vector<PlainArray> arrays() const;  // of what this holds
+
+ private:
+  std::vector<int64_t> numbers_;
+  std::vector<uint8_t> types_;
+  int64_t counts_[3];
+};
 
 }  // namespace scree

@@ -33,7 +33,7 @@ EnergyLook look_at(const Engine& e, const std::optional<EnergyLook>& last) {
 }
 
 ParticleState fastest_of(const Engine& e) {
-  const std::vector<ParticleState> all = e.particles();
+  const auto all = each_particle(e);
   return *std::ranges::max_element(all, {}, [](const ParticleState& p) { return dot(p.velocity, p.velocity); });
 }
 
@@ -135,13 +135,15 @@ std::vector<std::string> Watch::check_spin(const Engine& engine) {
   const double beyond =
       engine.sum([&](const ParticleState& p) { return surface_speed(p) <= limit ? 0.0 : 1.0; });  // NaN too
   if (beyond == 0) return {};
-  const std::vector<ParticleState> all = engine.particles();
+  const auto all = each_particle(engine);
   const auto nan = std::ranges::find_if(all, [](const ParticleState& p) { return std::isnan(norm(p.spin)); });
-  if (nan != all.end())
+  if (nan != all.end()) {
+    const ParticleState p = *nan;
     throw RunError(fmt::format("the spin of particle {} at ({:.6g}, {:.6g}, {:.6g}) m is not a number at t = {:.6g} s: "
                                "use a smaller [time] step (now {:.4g} s)",
-                               nan->id, nan->position.x, nan->position.y, nan->position.z, engine.time(), engine.dt()),
-                   nan->position);
+                               p.id, p.position.x, p.position.y, p.position.z, engine.time(), engine.dt()),
+                   p.position);
+  }
   if (std::exchange(warned_of_spin_, true)) return {};
   const ParticleState p = *std::ranges::max_element(all, {}, surface_speed);
   return {fmt::format(

@@ -164,14 +164,16 @@ TEST(FieldFiles, OfNoParticlesAreReadToo) {
 TEST(FieldFiles, OfManyParticlesKeepEachInItsPlace) {
   if (!has_vtk_reader()) GTEST_SKIP() << kNoVtkReader;
   testing::Folder folder;
-  std::vector<float> points, tens;  // three pieces, the last one shorter
+  std::vector<float> points, tens;  // several pieces, the last one shorter
   for (int k = 0; k < 150000; ++k) {
     for (int i = 0; i < 3; ++i) points.push_back(float(k) + 0.25f * float(i));
     tens.push_back(10 * float(k));
   }
   const fs::path path = folder.path("many.vtkhdf");
   VtkHdfFile file(path, VtkHdfType::unstructured_grid);
-  write_vertices(file, element_type<float>(), points.data(), tens.size());
+  file.array("Points", std::span<const float>(points), 3);
+  const VertexCells cells(tens.size());
+  for (const PlainArray& a : cells.arrays()) file.array(packed(a));
   file.array("PointData/tens", std::span<const float>(tens));
   file.close();
   const VtkData d = read_with_vtk({path})[0];

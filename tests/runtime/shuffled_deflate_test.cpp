@@ -25,8 +25,7 @@ std::vector<unsigned char> inflated(std::span<const unsigned char> stream, size_
 // Packs, undoes both filters, compares; returns the share of bytes that is left.
 template <class T>
 double packed_share(const std::vector<T>& values) {
-  ShuffledDeflate filter;
-  const auto stream = filter.pack(reinterpret_cast<const unsigned char*>(values.data()), values.size(), sizeof(T));
+  const auto stream = shuffled_deflate(reinterpret_cast<const unsigned char*>(values.data()), values.size(), sizeof(T));
   const auto shuffled = inflated(stream, values.size() * sizeof(T));
   std::vector<T> back(values.size());
   for (size_t k = 0; k < values.size(); ++k)
@@ -79,11 +78,10 @@ TEST(ShuffledDeflate, PacksTheSameNumbersToTheSameBytesWhereverTheStackIs) {
   for (auto& values : arrays)
     for (uint32_t& x : values) x = 0x00d7230a * (random() % 3);
   const auto packed = [&] {
-    ShuffledDeflate filter;
     std::vector<unsigned char> all;
     for (const auto& values : arrays) {
       const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-      const auto stream = filter.pack(bytes, values.size(), sizeof(uint32_t));
+      const auto stream = shuffled_deflate(bytes, values.size(), sizeof(uint32_t));
       all.insert(all.end(), stream.begin(), stream.end());
     }
     return all;

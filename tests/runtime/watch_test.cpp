@@ -442,8 +442,9 @@ TEST(Watch, a_sound_bed_is_left_alone_to_the_bit) {
 
 TEST(Watch, the_neighbourhood_of_a_failure_is_written) {
   const testing::Folder folder;
-  const std::vector<ParticleState> all{grain({0, 0, 0}), grain({0.001, 0, 0}), grain({0.005, 0, 0})};
-  write_neighbourhood_vtp(folder.path("failure.vtp"), all, {0, 0, 0}, 0.002);
+  const auto engine = make_engine(ceramic_case(kBox));
+  engine->insert(std::vector{grain({0, 0, 0}), grain({0.001, 0, 0}), grain({0.005, 0, 0})});
+  write_neighbourhood_vtp(folder.path("failure.vtp"), *engine, {0, 0, 0}, 0.002);
   std::ifstream file(folder.path("failure.vtp"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(text.find("NumberOfPoints=\"2\""), std::string::npos);
