@@ -98,6 +98,7 @@ RayTracer::RayTracer(const TracedBodies& bodies) {
   }
   const Bounds bounds = bounds_of(bodies);
   origin_ = bounds.min.x <= bounds.max.x ? 0.5 * (bounds.min + bounds.max) : Vec3{0, 0, 0};
+  balls_.reserve(bodies.balls.size());
   for (const Ball& b : bodies.balls) balls_.push_back({local(b.centre), float(b.radius)});
   for (const Capsule& c : bodies.capsules) {
     const Vec3 edge = c.axis.b - c.axis.a;

@@ -31,6 +31,7 @@ std::vector<CutPlane> cuts_of(const PictureRequest& request, const Bounds& regio
 
 void add_particles(Scene& scene, const ParticleFrame& frame, const ColourScale& scale,
                    const std::vector<double>& values) {
+  scene.balls.reserve(frame.count()), scene.ball_colours.reserve(frame.count());
   for (size_t k = 0; k < frame.count(); ++k) {
     scene.balls.push_back({frame.positions[k], frame.radii[k]});
     scene.ball_colours.push_back(to_linear(colour_of(scale, values[k])));
@@ -98,8 +99,8 @@ WallStyle parse_wall_style(const std::string& text) {
   fail_unknown_name("style of walls", text, names);
 }
 
-Image draw_picture(const Case& c, const ParticleFrame& frame, const PictureRequest& request, const Solid& solid) {
-  const std::vector<double> values = values_of(frame, request.colour);
+Image draw_picture(const Case& c, ParticleFrame frame, const PictureRequest& request, const Solid& solid) {
+  std::vector<double> values = values_of(frame, request.colour);
   const ColourScale scale = colour_scale(c, request.colour, values, request.range);
   const Bounds region = region_of_interest(c, frame);
   const PictureSize& size = request.size;
@@ -107,12 +108,14 @@ Image draw_picture(const Case& c, const ParticleFrame& frame, const PictureReque
   const Camera camera = make_camera(request.camera, subject, static_cast<double>(size.width) / size.height);
   Scene scene;
   add_particles(scene, frame, scale, values);
+  const double time = frame.time;
+  values = {}, frame = {};  // ten million grains are in memory once, not three times
   add_solid(scene, solid);
   scene.wall_style = request.walls;
   scene.cuts = cuts_of(request, region);
   if (request.camera.name == "junction" && scene.cuts.empty()) lay_bare(scene, camera.target);
   Image image = render(scene, camera, size, request.samples);
-  if (request.annotations) annotate(image, {scale, scale_bar(camera, size.width, size.height), c.title, frame.time});
+  if (request.annotations) annotate(image, {scale, scale_bar(camera, size.width, size.height), c.title, time});
   return image;
 }
 

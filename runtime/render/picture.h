@@ -25,6 +25,6 @@ WallStyle parse_wall_style(const std::string& text);
 
 // `solid`: what is left of the case's by then. Throws std::invalid_argument for a name, cut or size that is not known
 // or allowed.
-Image draw_picture(const Case& c, const ParticleFrame& frame, const PictureRequest& request, const Solid& solid);
+Image draw_picture(const Case& c, ParticleFrame frame, const PictureRequest& request, const Solid& solid);
 
 }  // namespace scree

@@ -28,6 +28,7 @@ template <class To>
 std::vector<To> values_in(const ParticleSnapshot::Column& column) {
   const auto read = [&]<class T>(T) {
     std::vector<To> values;
+    values.reserve(column.size());
     for (size_t at = 0; at < column.values.size(); at += sizeof(T)) {
       T value;
       std::memcpy(&value, &column.values[at], sizeof(T));
@@ -111,9 +112,8 @@ class PictureObserver final : public Observer {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw RunError(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
-    const ParticleFrame frame = frame_now(run.c, run.engine, picture_.request.colour);
     write_png(folder / fmt::format("{}_{:.6f}.png", picture_.name, run.engine.time()),
-              draw_picture(run.c, frame, picture_.request, run.solid));
+              draw_picture(run.c, frame_now(run.c, run.engine, picture_.request.colour), picture_.request, run.solid));
     ++drawn_;
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
@@ -141,6 +141,7 @@ ParticleFrame frame_now(const Case& c, const Engine& engine, const std::string& 
   for (const ParticleSnapshot::Column& column : snapshot.columns()) {
     if (column.name == "id") continue;
     if (column.name == "Points") {
+      frame.positions.reserve(column.size() / 3);
       const std::vector<double> x = values_in<double>(column);
       for (size_t k = 0; k < x.size(); k += 3) frame.positions.push_back({x[k], x[k + 1], x[k + 2]});
     } else if (column.name == "radius") {
