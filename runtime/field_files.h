@@ -4,7 +4,7 @@
 //                             runtime/particle_fields.h
 //   solid.vtkhdf.series       fibres and walls as a surface (runtime/solid_mesh.h), a frame whenever walls were opened
 //
-// look() copies what is needed and goes on; a thread beside the run compresses and writes. One frame is in memory at a
+// look() packs what is needed, on all threads, and goes on; a thread beside the run writes. One frame is in memory at a
 // time: if the one before is not written yet, look() waits. That and its making take kFieldBytesPerParticle.
 #pragma once
 
