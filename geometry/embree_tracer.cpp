@@ -173,6 +173,7 @@ class EmbreeTracer final : public RayTracer {
  public:
   explicit EmbreeTracer(const TracedBodies& bodies) : RayTracer(bodies), device_(embree_device()) {
     scene_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_COMPACT);
     attach<Shape::ball>(balls_);
     attach<Shape::capsule>(capsules_);
     attach<Shape::quad>(quads_);
