@@ -11,6 +11,7 @@ namespace scree {
 CoarseGrid grid_of(const AverageSettings& average, const Case& c);
 
 double memory_of_average(const AverageSettings& average);  // bytes, while the run goes on and its files are written
-inline constexpr double kAverageBytesPerParticle = 240;    // while it looks
+// While it looks, of so many particles at most: it takes them some at a time.
+inline constexpr double kAverageBytesPerParticle = 240, kAverageParticlesAtOnce = 4e5;
 
 }  // namespace scree

@@ -25,25 +25,28 @@ double inverse_volume(double radius) { return 3 / (4 * std::numbers::pi * radius
 
 }  // namespace
 
-ContactSums contact_sums(std::span<const ParticleState> particles, const Engine& engine) {
+ContactSums contact_sums(const Engine& engine) {
   if (!engine.knows_contacts()) return {};
-  const size_t n = particles.size();
+  const size_t n = engine.count();
+  std::vector<double> radii(n);
+  parallel_for_each(n, [&](size_t k) { radii[k] = engine.particle(k).radius; });
   ContactSums sums{std::vector<Vec3>(n, Vec3{0, 0, 0}), std::vector<uint16_t>(n), std::vector<uint16_t>(n),
                    std::vector<Stress>(n)};
-  const auto add = [&](size_t k, const Vec3& branch, const Vec3& force) {
+  // From a particle the point lies along the normal, whatever its coordinates: a periodic pair's are those beside i.
+  const auto add = [&](size_t k, double inside, const Vec3& towards, const Vec3& force) {
     sums.force[k] += force;
-    add_product(sums.stress[k], branch, force);
+    add_product(sums.stress[k], (radii[k] - inside) * towards, force);
   };
   engine.visit_contacts_by_particles([&](size_t first, size_t last, const ContactState& k) {
-    add(k.i, k.point - particles[k.i].position, k.force);
+    const double inside = k.with_solid ? k.overlap : 0.5 * k.overlap;  // how deep the point lies
+    add(k.i, inside, -k.normal, k.force);
     ++(k.with_solid ? sums.wall_contacts : sums.coordination)[k.i];
     if (k.with_solid || k.j < first || k.j >= last) return;
-    // From j the point lies along the normal; its own coordinates may be those beside i's periodic image.
-    add(k.j, (particles[k.j].radius - 0.5 * k.overlap) * k.normal, -k.force);
+    add(k.j, inside, k.normal, -k.force);
     ++sums.coordination[k.j];
   });
   parallel_for_each(n, [&](size_t k) {
-    for (float& s : sums.stress[k]) s *= static_cast<float>(-inverse_volume(particles[k].radius));
+    for (float& s : sums.stress[k]) s *= static_cast<float>(-inverse_volume(radii[k]));
   });
   return sums;
 }

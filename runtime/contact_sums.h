@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "runtime/engine.h"
@@ -24,7 +23,7 @@ struct ContactSums {
   std::vector<std::array<float, 6>> stress;  // xx, yy, zz, xy, yz, xz
 };
 
-// `particles` are Engine::particles() of the moment. Empty while the engine does not know its contacts.
-ContactSums contact_sums(std::span<const ParticleState> particles, const Engine& engine);
+// In the order of Engine::particles(). Empty while the engine does not know its contacts.
+ContactSums contact_sums(const Engine& engine);
 
 }  // namespace scree

@@ -13,7 +13,7 @@
 
 namespace scree {
 
-inline constexpr double kFieldBytesPerParticle = 250;
+inline constexpr double kFieldBytesPerParticle = 180;
 
 bool writes_fields(const FieldSettings& settings);
 

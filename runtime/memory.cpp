@@ -12,6 +12,7 @@
 #include "runtime/average_grid.h"
 #include "runtime/case_size.h"
 #include "runtime/field_files.h"
+#include "runtime/render/run_pictures.h"
 #include "runtime/residence.h"
 #include "runtime/touch_surface.h"
 
@@ -116,11 +117,13 @@ double memory_of_particles(const Case& c, double count) {
 double memory_of_primitives(double count) { return count * kBytesPerPrimitive; }
 
 double memory_needed(const Case& c) {
-  const double per_particle = (writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0) +
-                              (c.output.residence.enabled ? kResidenceBytesPerParticle : 0) +
-                              (c.output.averages.empty() ? 0 : kAverageBytesPerParticle);
-  double bytes = kFixedBytes + memory_of_particles(c, expected_particles(c)) + per_particle * expected_particles(c) +
+  const double count = expected_particles(c);
+  const double frame = writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0;
+  const double picture = c.output.pictures.empty() ? 0 : kPictureBytesPerParticle;
+  double bytes = kFixedBytes + memory_of_particles(c, count) + std::max(frame, picture) * count +
                  memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
+  if (c.output.residence.enabled) bytes += kResidenceBytesPerParticle * count;
+  if (!c.output.averages.empty()) bytes += kAverageBytesPerParticle * std::min(count, kAverageParticlesAtOnce);
   for (const AverageSettings& average : c.output.averages) bytes += memory_of_average(average);
   if (c.output.touch.enabled) bytes += kBytesPerTouchCell * cells_of_touch(c);
   return bytes;

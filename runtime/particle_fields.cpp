@@ -18,101 +18,139 @@ using Column = ParticleSnapshot::Column;
 
 constexpr double kMostRounding = 1e-4;  // of a radius, of positions in single precision
 
-template <class T, class Get>
-Column column(const char* name, uint64_t components, size_t count, const Get& get) {
-  const uint64_t per_row = std::max<uint64_t>(components, 1);
-  Column c{name, element_type<T>(), components, std::vector<char>(count * per_row * sizeof(T))};
-  parallel_for_each(count, [&](size_t k) {
-    char* to = c.values.data() + k * per_row * sizeof(T);
-    for (uint64_t i = 0; i < per_row; ++i, to += sizeof(T)) {
-      const T value = static_cast<T>(get(k, i));
-      std::memcpy(to, &value, sizeof(T));
-    }
-  });
-  return c;
-}
-
 double component(const Vec3& v, uint64_t i) { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
 
-// A moment's particles and what their contacts come to.
+// What the rows are made of, but for the particles: those come some at a time.
 struct Source {
-  std::vector<ParticleState> particles;
   bool contacts_known = false;
   ContactSums sums;  // empty: unknown, or no field asks for it
   double time = 0, dt = 0;
   const std::vector<Insertion>& insertions;
 
-  template <class Get>
-  Column vector(const char* name, const Get& get) const {
-    return column<float>(name, 3, particles.size(), [&](size_t k, uint64_t i) { return component(get(k), i); });
-  }
-  template <class Get>
-  Column count(const char* name, const Get& get) const {
-    return column<int16_t>(name, 0, particles.size(),
-                           [&](size_t k, uint64_t) { return contacts_known ? static_cast<int>(get(k)) : -1; });
-  }
   double age(uint64_t id) const {
     const auto after = std::ranges::upper_bound(insertions, id, {}, &Insertion::first_id);
     return time - static_cast<double>((after - 1)->step) * dt;
   }
 };
 
+struct Rows {
+  const Source& of;
+  size_t first;  // row of the first particle
+  std::span<const ParticleState> particles;
+};
+
+// get(particle, its row, component), for each of the rows.
+template <class T, class Get>
+void fill(Column& c, const Rows& rows, const Get& get) {
+  const uint64_t per_row = std::max<uint64_t>(c.components, 1);
+  char* to = c.values.data() + rows.first * per_row * sizeof(T);
+  for (size_t k = 0; k < rows.particles.size(); ++k)
+    for (uint64_t i = 0; i < per_row; ++i, to += sizeof(T)) {
+      const T value = static_cast<T>(get(rows.particles[k], rows.first + k, i));
+      std::memcpy(to, &value, sizeof(T));
+    }
+}
+
+template <class Get>
+void fill_counts(Column& c, const Rows& rows, const Get& get) {
+  fill<int16_t>(c, rows, [&](const ParticleState&, size_t row, uint64_t) {
+    return rows.of.contacts_known ? static_cast<int>(get(row)) : -1;
+  });
+}
+
+using Fill = void (*)(Column&, const Rows&);
+
 struct Field {
   const char* name;
   int components;
   bool from_contacts, in_files;
-  Column (*make)(const Source&, const char* name);
+  ElementType type;
+  Fill fill;
 };
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr ElementType kReal = element_type<float>(), kCount = element_type<int16_t>();
 
 const std::array kFields = {
-    Field{"velocity", 3, false, true,
-          [](const Source& s, const char* name) {
-            return s.vector(name, [&](size_t k) { return s.particles[k].velocity; });
+    Field{"velocity", 3, false, true, kReal,
+          [](Column& c, const Rows& rows) {
+            fill<float>(c, rows, [](const ParticleState& p, size_t, uint64_t i) { return component(p.velocity, i); });
           }},
-    Field{"angular_velocity", 3, false, true,
-          [](const Source& s, const char* name) {
-            return s.vector(name, [&](size_t k) { return s.particles[k].spin; });
+    Field{"angular_velocity", 3, false, true, kReal,
+          [](Column& c, const Rows& rows) {
+            fill<float>(c, rows, [](const ParticleState& p, size_t, uint64_t i) { return component(p.spin, i); });
           }},
-    Field{"force", 3, true, true,
-          [](const Source& s, const char* name) {
-            return s.vector(name, [&](size_t k) {
-              return s.contacts_known ? s.sums.force[k] : Vec3{kUnknown, kUnknown, kUnknown};
+    Field{"force", 3, true, true, kReal,
+          [](Column& c, const Rows& rows) {
+            fill<float>(c, rows, [&](const ParticleState&, size_t row, uint64_t i) {
+              return rows.of.contacts_known ? component(rows.of.sums.force[row], i) : kUnknown;
             });
           }},
-    Field{"coordination", 1, true, true,
-          [](const Source& s, const char* name) {
-            return s.count(name, [&](size_t k) { return s.sums.coordination[k]; });
+    Field{"coordination", 1, true, true, kCount,
+          [](Column& c, const Rows& rows) {
+            fill_counts(c, rows, [&](size_t row) { return rows.of.sums.coordination[row]; });
           }},
-    Field{"wall_contacts", 1, true, true,
-          [](const Source& s, const char* name) {
-            return s.count(name, [&](size_t k) { return s.sums.wall_contacts[k]; });
+    Field{"wall_contacts", 1, true, true, kCount,
+          [](Column& c, const Rows& rows) {
+            fill_counts(c, rows, [&](size_t row) { return rows.of.sums.wall_contacts[row]; });
           }},
-    Field{"contact_stress", 6, true, true,
-          [](const Source& s, const char* name) {
-            return column<float>(name, 6, s.particles.size(), [&](size_t k, uint64_t i) {
-              return s.contacts_known ? s.sums.stress[k][i] : kUnknown;
+    Field{"contact_stress", 6, true, true, kReal,
+          [](Column& c, const Rows& rows) {
+            fill<float>(c, rows, [&](const ParticleState&, size_t row, uint64_t i) {
+              return rows.of.contacts_known ? rows.of.sums.stress[row][i] : kUnknown;
             });
           }},
-    Field{"age", 1, false, true,
-          [](const Source& s, const char* name) {
-            return column<float>(name, 0, s.particles.size(),
-                                 [&](size_t k, uint64_t) { return s.age(s.particles[k].id); });
+    Field{"age", 1, false, true, kReal,
+          [](Column& c, const Rows& rows) {
+            fill<float>(c, rows, [&](const ParticleState& p, size_t, uint64_t) { return rows.of.age(p.id); });
           }},
-    Field{"mass", 1, false, false,
-          [](const Source& s, const char* name) {
-            return column<float>(name, 0, s.particles.size(), [&](size_t k, uint64_t) { return s.particles[k].mass; });
+    Field{"mass", 1, false, false, kReal,
+          [](Column& c, const Rows& rows) {
+            fill<float>(c, rows, [](const ParticleState& p, size_t, uint64_t) { return p.mass; });
           }},
 };
 
-Column points(const Case& c, const std::vector<ParticleState>& particles) {
+// Those that every snapshot has come first.
+template <class Coordinate>
+Field points() {
+  return {"Points", 3, false, true, element_type<Coordinate>(), [](Column& c, const Rows& rows) {
+            fill<Coordinate>(c, rows,
+                             [](const ParticleState& p, size_t, uint64_t i) { return component(p.position, i); });
+          }};
+}
+const std::array kAlways = {
+    Field{"id", 1, false, true, element_type<uint32_t>(),
+          [](Column& c, const Rows& rows) {
+            fill<uint32_t>(c, rows, [](const ParticleState& p, size_t, uint64_t) { return p.id; });
+          }},
+    Field{"radius", 1, false, true, kReal,
+          [](Column& c, const Rows& rows) {
+            fill<float>(c, rows, [](const ParticleState& p, size_t, uint64_t) { return p.radius; });
+          }},
+    Field{"kind", 1, false, true, element_type<uint8_t>(),
+          [](Column& c, const Rows& rows) {
+            fill<uint8_t>(c, rows, [](const ParticleState& p, size_t, uint64_t) { return p.kind; });
+          }},
+};
+
+bool needs_double_points(const Case& c) {
   double reach = 0;  // m, of a coordinate
   for (const Vec3& corner : {c.domain.min, c.domain.max})
     for (const double x : {corner.x, corner.y, corner.z}) reach = std::max(reach, std::abs(x));
-  const auto get = [&](size_t k, uint64_t i) { return component(particles[k].position, i); };
-  if (reach * 0x1p-24 > kMostRounding * smallest_radius(c)) return column<double>("Points", 3, particles.size(), get);
-  return column<float>("Points", 3, particles.size(), get);
+  return reach * 0x1p-24 > kMostRounding * smallest_radius(c);
+}
+
+// All columns of some particles before the next: what is made of each is in the cache, and of all at no time.
+void fill_columns(std::span<Column> columns, std::span<const Fill> fills, const Engine& engine, const Source& source) {
+  constexpr size_t kAtOnce = 1024;
+  const size_t n = engine.count();
+  parallel_for((n + kAtOnce - 1) / kAtOnce, [&](size_t piece) {
+    const size_t first = piece * kAtOnce, last = std::min(n, first + kAtOnce);
+    std::vector<ParticleState> particles;
+    particles.reserve(last - first);
+    for (size_t k = first; k < last; ++k) particles.push_back(engine.particle(k));
+    for (size_t k = 0; k < columns.size(); ++k) fills[k](columns[k], {source, first, particles});
+  });
 }
 
 }  // namespace
@@ -133,16 +171,20 @@ std::vector<ParticleFieldForm> particle_field_forms() {
 
 ParticleSnapshot::ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& fields) {
   const auto wanted = [&](const Field& field) { return std::ranges::find(fields, field.name) != fields.end(); };
-  Source s{engine.particles(), engine.knows_contacts(), {}, engine.time(), engine.dt(), engine.insertions()};
-  if (s.contacts_known && std::ranges::any_of(kFields, [&](const Field& f) { return f.from_contacts && wanted(f); }))
-    s.sums = contact_sums(s.particles, engine);
-  const size_t n = s.particles.size();
-  columns_.push_back(points(c, s.particles));
-  columns_.push_back(column<uint32_t>("id", 0, n, [&](size_t k, uint64_t) { return s.particles[k].id; }));
-  columns_.push_back(column<float>("radius", 0, n, [&](size_t k, uint64_t) { return s.particles[k].radius; }));
-  columns_.push_back(column<uint8_t>("kind", 0, n, [&](size_t k, uint64_t) { return s.particles[k].kind; }));
+  Source source{engine.knows_contacts(), {}, engine.time(), engine.dt(), engine.insertions()};
+  if (std::ranges::any_of(kFields, [&](const Field& f) { return f.from_contacts && wanted(f); }))
+    source.sums = contact_sums(engine);
+  std::vector<Fill> fills;
+  const auto add = [&](const Field& f) {
+    const uint64_t components = f.components > 1 ? f.components : 0;
+    columns_.push_back({f.name, f.type, components, std::vector<char>(engine.count() * f.components * f.type.size)});
+    fills.push_back(f.fill);
+  };
+  add(needs_double_points(c) ? points<double>() : points<float>());
+  for (const Field& field : kAlways) add(field);
   for (const Field& field : kFields)
-    if (wanted(field)) columns_.push_back(field.make(s, field.name));
+    if (wanted(field)) add(field);
+  fill_columns(columns_, fills, engine, source);
 }
 
 std::vector<PackedArray> ParticleSnapshot::packed() const {

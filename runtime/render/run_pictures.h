@@ -7,6 +7,8 @@
 
 namespace scree {
 
+inline constexpr double kPictureBytesPerParticle = 150;  // while one is drawn
+
 // Reads every [[output.picture]] of `output`: name, camera, colour, range, cut, walls, size, samples, what a free
 // camera or a junction needs, and its moments (runtime/case_moments.h). Names of cameras and quantities are checked
 // here.

@@ -97,7 +97,7 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
   EXPECT_NEAR(d.array("field_data", "time").values.at(0), s.engine->time(), 1e-15);
 
   const std::vector<ParticleState> particles = s.engine->particles();
-  const ContactSums sums = contact_sums(particles, *s.engine);
+  const ContactSums sums = contact_sums(*s.engine);
   const auto field = [&](const char* name) { return by_id(d, d.array("point_data", name)); };
   const auto position = by_id(d, d.points), velocity = field("velocity"), spin = field("angular_velocity"),
              force = field("force"), stress = field("contact_stress"), radius = field("radius"), kind = field("kind"),
@@ -303,7 +303,7 @@ TEST(RunPictures, AreColouredByTheFieldsOfFiles) {
   EXPECT_TRUE(std::isnan(values_of(frame_now(s.c, *s.engine, "coordination"), "coordination").at(0)));
   for (int k = 0; k < 100; ++k) s.engine->step();
   const std::vector<ParticleState> particles = s.engine->particles();
-  const ContactSums sums = contact_sums(particles, *s.engine);
+  const ContactSums sums = contact_sums(*s.engine);
   const auto values = [&](const char* quantity) { return values_of(frame_now(s.c, *s.engine, quantity), quantity); };
   const auto speed = values("speed"), coordination = values("coordination"), walls = values("wall_contacts"),
              kind = values("kind"), age = values("age"), force = values("force_z"), mass = values("mass"),
