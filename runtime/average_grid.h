@@ -12,6 +12,6 @@ CoarseGrid grid_of(const AverageSettings& average, const Case& c);
 
 double memory_of_average(const AverageSettings& average);  // bytes, while the run goes on and its files are written
 // While it looks, of so many particles at most: it takes them some at a time.
-inline constexpr double kAverageBytesPerParticle = 240, kAverageParticlesAtOnce = 4e5;
+inline constexpr double kAverageBytesPerParticle = 240, kAverageParticlesAtOnce = 6e5;
 
 }  // namespace scree

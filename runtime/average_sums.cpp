@@ -36,14 +36,13 @@ StressSample sample_of(const Vec3& point, const Vec3& branch, const Vec3& f) {
            0.5 * (f.x * l.z + f.z * l.x)}};
 }
 
-std::vector<StressSample> stress_samples(std::span<const ContactState> contacts, const Engine& engine) {
+std::vector<StressSample> stress_samples(std::span<const ContactState> contacts, std::span<const double> radii) {
   std::vector<StressSample> samples;
   samples.reserve(2 * contacts.size());
   for (const ContactState& k : contacts) {
     const double inside = k.with_solid ? k.overlap : 0.5 * k.overlap;  // how deep the point lies in the particle
-    samples.push_back(sample_of(k.point, (engine.particle(k.i).radius - inside) * k.normal, k.force));
-    if (!k.with_solid)
-      samples.push_back(sample_of(k.point, -(engine.particle(k.j).radius - inside) * k.normal, -k.force));
+    samples.push_back(sample_of(k.point, (radii[k.i] - inside) * k.normal, k.force));
+    if (!k.with_solid) samples.push_back(sample_of(k.point, -(radii[k.j] - inside) * k.normal, -k.force));
   }
   return samples;
 }
@@ -116,6 +115,18 @@ AverageSums::AverageSums(const CoarseGrid& grid)
     : grid_(grid), grains_(grid.size() * kGrainValues, 0.0), stresses_(grid.size() * kStressValues, 0.0) {}
 
 void AverageSums::add(const Engine& engine, const Case& c) {
+  add_grains(engine);
+  std::vector<double> radii(engine.count());
+  parallel_for_each(radii.size(), [&](size_t k) { radii[k] = engine.particle(k).radius; });
+  engine.visit_contacts([&](std::span<const ContactState> contacts) {
+    std::vector<StressSample> stresses = stress_samples(contacts, radii);
+    wrap_into(c, stresses);
+    deposit<kStressValues>(grid_, stresses, stresses_);
+  });
+  ++looks_;
+}
+
+void AverageSums::add_grains(const Engine& engine) {
   std::vector<GrainSample> grains;  // some at a time
   for (const ParticleState& p : each_particle(engine)) {
     if (!grid_.holds(p.position)) continue;
@@ -125,12 +136,6 @@ void AverageSums::add(const Engine& engine, const Case& c) {
     grains.clear();
   }
   deposit<kGrainValues>(grid_, grains, grains_);
-  engine.visit_contacts([&](std::span<const ContactState> contacts) {
-    std::vector<StressSample> stresses = stress_samples(contacts, engine);
-    wrap_into(c, stresses);
-    deposit<kStressValues>(grid_, stresses, stresses_);
-  });
-  ++looks_;
 }
 
 AverageFields AverageSums::fields(const Case& c) const {

@@ -46,6 +46,8 @@ class AverageSums {
   void load(StateReader& in, const std::string& at);
 
  private:
+  void add_grains(const Engine& engine);
+
   CoarseGrid grid_;
   std::vector<double> grains_, stresses_;  // kGrainValues, kStressValues a cell, summed over looks
   uint64_t looks_ = 0;

@@ -1,6 +1,7 @@
 #include "runtime/field_files.h"
 
 #include <memory>
+#include <utility>
 
 #include "runtime/particle_fields.h"
 #include "runtime/solid_mesh.h"
@@ -48,10 +49,9 @@ void FieldFiles::look(const RunView& run) {
   if (has_frame_of_now(engine)) return;
   background_.finish();  // one frame in memory at a time
   // Packed here, on all threads: beside the run, one thread of the loops would lose its core to it, and all wait.
-  const auto frame =
-      std::make_shared<std::vector<PackedArray>>(ParticleSnapshot(run.c, engine, settings.write).packed());
-  particles_.write(step, engine.time(), [frame](VtkHdfFile& file) {
-    for (const PackedArray& array : *frame) file.array(array);
+  std::vector<PackedArray> frame = ParticleSnapshot(run.c, engine, settings.write).packed();
+  particles_.write(step, engine.time(), [frame = std::move(frame)](VtkHdfFile& file) {
+    for (const PackedArray& array : frame) file.array(array);
   });
   newest_.inserted = engine.counters().inserted, newest_.contacts_known = engine.knows_contacts();
 }

@@ -15,7 +15,7 @@
 namespace scree {
 
 // Held by whoever calls the library, which is not made for threads: a checkpoint and the writer of field files take
-// turns, call by call. The first lock prepares the library.
+// turns, array by array. The first lock prepares the library.
 class Hdf5Lock {
  public:
   Hdf5Lock();

@@ -21,8 +21,7 @@ struct ParticleFieldForm {
 };
 std::vector<ParticleFieldForm> particle_field_forms();
 
-// A copy of a moment. SI units, numbers of single precision, in the engine's
-// order of storage:
+// A copy of a moment. SI units, numbers of single precision, in the engine's order of storage:
 //   Points             m; double where single precision would move a particle by more than 1e-4 of its radius
 //   id, kind           kinds count in the case's order, from 0
 //   radius             m

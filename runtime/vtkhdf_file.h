@@ -5,8 +5,8 @@
 //     PointData/NAME   one value per point; N x 3 is a vector, N x 6 a tensor xx yy zz xy yz xz
 //     CellData/NAME, FieldData/NAME
 //
-// Version 1.0 has these two types only. Arrays are in pieces of some 16,000 rows, shuffled and gzipped: any HDF5 reader
-// undoes that. Layout: https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format
+// Version 1.0 has these two types only. Arrays are in pieces (runtime/packed_array.h), shuffled and gzipped: any HDF5
+// reader undoes that. Layout: https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format
 #pragma once
 
 #include <array>

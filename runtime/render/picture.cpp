@@ -109,7 +109,7 @@ Image draw_picture(const Case& c, ParticleFrame frame, const PictureRequest& req
   Scene scene;
   add_particles(scene, frame, scale, values);
   const double time = frame.time;
-  values = {}, frame = {};  // ten million grains are in memory once, not three times
+  values = std::vector<double>(), frame = {};  // ten million grains are in memory once, not three times
   add_solid(scene, solid);
   scene.wall_style = request.walls;
   scene.cuts = cuts_of(request, region);
