@@ -44,7 +44,9 @@ addSection({
     const swept = data.sweep.parameters.map((p, k) => [p, k]).filter(([p]) => p.values.length > 1);
     const measures = measuresOf(data), combinations = combinationsOf(data);
     if (swept.length === 0) return null;
+    const begun = combinations.filter(({ results }) => results.length > 0 && !results.some((run) => run.summary?.status === "done"));
     return [
+      begun.length > 0 && h("p", { class: "warning" }, `No run of ${begun.map(({ values }) => labelsOf(data.sweep, values).join(", ")).join("; ")} is done: what stands there is of runs that go on.`),
       swept.map(([, k]) => measures.filter((m) => m.known).map((m) => measureChart(data, combinations, k, m))),
       note(data.sweep.seeds.length > 1 ? "Points: means over the seeds. Bars: one standard error." : "Bars: one standard error, where a run alone tells it."),
       measures.map((m) => m.known ? m.without > 0 && note(`${m.title}: ${m.without} of the runs ${m.without === 1 ? "has" : "have"} none, as ${m.without === 1 ? "it" : "they"} did not flow long enough.`) : m.why && note(m.why)),
