@@ -6,6 +6,8 @@ const kMostCurves = 16;
 const otherValues = (values, parameter) => values.filter((_, k) => k !== parameter).join();
 const inPlainWords = (label) => lowerFirst(label.replace(/_/g, " "));
 
+const namesOf = (sweep, values) => labelsOf(sweep, values).map((text, k) => `${inPlainWords(sweep.parameters[k].label)} ${text}`).join(", ");
+
 const measureChart = ({ sweep }, combinations, parameter, measure) => {
   const { unit } = measure, p = sweep.parameters[parameter];
   const numeric = p.values.every((v) => isNumber(v.number));
@@ -46,7 +48,7 @@ addSection({
     if (swept.length === 0) return null;
     const begun = combinations.filter(({ results }) => results.length > 0 && !results.some((run) => run.summary?.status === "done"));
     return [
-      begun.length > 0 && h("p", { class: "warning" }, `No run of ${begun.map(({ values }) => labelsOf(data.sweep, values).join(", ")).join("; ")} is done: what stands there is of runs that go on.`),
+      begun.length > 0 && h("p", { class: "warning" }, `Points of runs that are not done: ${begun.map(({ values }) => namesOf(data.sweep, values)).join("; ")}.`),
       swept.map(([, k]) => measures.filter((m) => m.known).map((m) => measureChart(data, combinations, k, m))),
       note(data.sweep.seeds.length > 1 ? "Points: means over the seeds. Bars: one standard error." : "Bars: one standard error, where a run alone tells it."),
       measures.map((m) => m.known ? m.without > 0 && note(`${m.title}: ${m.without} of the runs ${m.without === 1 ? "has" : "have"} none, as ${m.without === 1 ? "it" : "they"} did not flow long enough.`) : m.why && note(m.why)),
