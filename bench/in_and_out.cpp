@@ -125,14 +125,14 @@ void field_copy(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(0)));
   const Case c = drain_case();
   const auto engine = started_engine(c, drain_in_flow(), kWarmUpSteps);
-  for (auto _ : state) ParticleSnapshot(c, *engine, particle_field_names()).packed();
+  for (auto _ : state) packed_particles(c, *engine, particle_field_names());
   set_rate(state, "rows/s", static_cast<double>(engine->count() * state.iterations()));
 }
 
 void field_write(benchmark::State& state) {
   const Case c = drain_case();
   const auto engine = started_engine(c, drain_in_flow(), kWarmUpSteps);
-  const auto frame = ParticleSnapshot(c, *engine, particle_field_names()).packed();
+  const auto frame = packed_particles(c, *engine, particle_field_names());
   const TemporaryFile to(".vtkhdf");
   for (auto _ : state) {
     VtkHdfFile file(to.path(), VtkHdfType::unstructured_grid);

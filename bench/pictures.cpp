@@ -22,7 +22,7 @@ Scene bed(size_t grains) {
     const Vec3 shaken{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2)};
     const Vec3 cell{k % wide - 0.5 * wide, double(k / (wide * high)), k / wide % high - 0.5 * high};
     scene.balls.push_back({kDiameter * (cell + shaken), 0.5 * kDiameter});
-    scene.ball_colours.push_back(to_linear(colour_of(ColourMap::sequential, random.uniform(0, 1))));
+    scene.ball_colours.push_back(colour_of(ColourMap::sequential, random.uniform(0, 1)));
   }
   return scene;
 }

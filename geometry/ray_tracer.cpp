@@ -40,7 +40,7 @@ QuadBody quad_body(const RayTracer& tracer, const Quad& quad) {
 
 class BruteForceTracer final : public RayTracer {
  public:
-  explicit BruteForceTracer(const TracedBodies& bodies) : RayTracer(bodies) {}
+  explicit BruteForceTracer(TracedBodies bodies) : RayTracer(std::move(bodies)) {}
 
   void closest(std::span<const Ray> rays, std::span<Hit> hits) const override {
     for (size_t k = 0; k < rays.size(); ++k) {
@@ -89,7 +89,7 @@ class BruteForceTracer final : public RayTracer {
 
 }  // namespace
 
-RayTracer::RayTracer(const TracedBodies& bodies) {
+RayTracer::RayTracer(TracedBodies bodies) {  // NOLINT(performance-unnecessary-value-param): it takes them
   for (size_t k = 0; k < bodies.balls.size(); ++k)
     require_drawable("sphere", k, bodies.balls[k].radius, bodies.balls[k].centre);
   for (size_t k = 0; k < bodies.capsules.size(); ++k) {
@@ -116,8 +116,8 @@ Vec3f RayTracer::normal(const BodyId& body, const Vec3f& x) const {
                                         : normal_at(quads_[body.index], x);
 }
 
-std::unique_ptr<RayTracer> make_brute_force_tracer(const TracedBodies& bodies) {
-  return std::make_unique<BruteForceTracer>(bodies);
+std::unique_ptr<RayTracer> make_brute_force_tracer(TracedBodies bodies) {
+  return std::make_unique<BruteForceTracer>(std::move(bodies));
 }
 
 }  // namespace scree

@@ -49,7 +49,7 @@ void FieldFiles::look(const RunView& run) {
   if (has_frame_of_now(engine)) return;
   background_.finish();  // one frame in memory at a time
   // Packed here, on all threads: beside the run, one thread of the loops would lose its core to it, and all wait.
-  std::vector<PackedArray> frame = ParticleSnapshot(run.c, engine, settings.write).packed();
+  std::vector<PackedArray> frame = packed_particles(run.c, engine, settings.write);
   particles_.write(step, engine.time(), [frame = std::move(frame)](VtkHdfFile& file) {
     for (const PackedArray& array : frame) file.array(array);
   });

@@ -14,11 +14,7 @@ namespace {
 
 constexpr uint64_t kPieceRows = 16384;  // at most: what a thread packs stays in its cache
 
-PackedArray without_pieces(const PlainArray& a) {
-  return {a.name, a.type, a.size, a.piece_rows, std::vector<std::vector<unsigned char>>(a.pieces())};
-}
-
-void pack_piece(const PlainArray& a, uint64_t piece, PackedArray& to) {
+std::vector<unsigned char> packed_piece(const PlainArray& a, uint64_t piece) {
   const uint64_t row_bytes = a.per_row() * a.type.size, first = piece * a.piece_rows;
   const auto* from = static_cast<const unsigned char*>(a.values) + first * row_bytes;
   std::vector<unsigned char> filled_up;
@@ -27,7 +23,7 @@ void pack_piece(const PlainArray& a, uint64_t piece, PackedArray& to) {
     std::memcpy(filled_up.data(), from, rows * row_bytes);
     from = filled_up.data();
   }
-  to.pieces[piece] = shuffled_deflate(from, a.piece_rows * a.per_row(), a.type.size);
+  return shuffled_deflate(from, a.piece_rows * a.per_row(), a.type.size);
 }
 
 }  // namespace
@@ -45,26 +41,38 @@ PlainArray plain_array(const std::string& name, const ElementType& type, const v
   return a;
 }
 
+PackedArray without_pieces(const PlainArray& a) {
+  return {a.name, a.type, a.size, a.piece_rows, std::vector<std::vector<unsigned char>>(a.pieces())};
+}
+
 PackedArray packed(const PlainArray& array) {
   PackedArray result = without_pieces(array);
-  for (uint64_t piece = 0; piece < array.pieces(); ++piece) pack_piece(array, piece, result);
+  for (uint64_t piece = 0; piece < array.pieces(); ++piece) result.pieces[piece] = packed_piece(array, piece);
   return result;
 }
 
-std::vector<PackedArray> packed(std::span<const PlainArray> arrays) {
-  std::vector<PackedArray> result;
+void pack_pieces(std::span<const PlainArray> parts, uint64_t first_piece, std::span<PackedArray* const> to) {
   struct Job {
     size_t array;
     uint64_t piece, bytes;
   };
   std::vector<Job> jobs;
-  for (size_t k = 0; k < arrays.size(); ++k) {
-    result.push_back(without_pieces(arrays[k]));
-    for (uint64_t piece = 0; piece < arrays[k].pieces(); ++piece)
-      jobs.push_back({k, piece, arrays[k].piece_rows * arrays[k].per_row() * arrays[k].type.size});
-  }
+  for (size_t k = 0; k < parts.size(); ++k)
+    for (uint64_t piece = 0; piece < parts[k].pieces(); ++piece)
+      jobs.push_back({k, piece, parts[k].piece_rows * parts[k].per_row() * parts[k].type.size});
   std::ranges::stable_sort(jobs, std::greater<>(), &Job::bytes);  // so that no thread is left with a large one
-  parallel_for(jobs.size(), [&](size_t k) { pack_piece(arrays[jobs[k].array], jobs[k].piece, result[jobs[k].array]); });
+  parallel_for(jobs.size(), [&](size_t k) {
+    const auto [array, piece, bytes] = jobs[k];
+    to[array]->pieces[first_piece + piece] = packed_piece(parts[array], piece);
+  });
+}
+
+std::vector<PackedArray> packed(std::span<const PlainArray> arrays) {
+  std::vector<PackedArray> result;
+  for (const PlainArray& array : arrays) result.push_back(without_pieces(array));
+  std::vector<PackedArray*> to;
+  for (PackedArray& array : result) to.push_back(&array);
+  pack_pieces(arrays, 0, to);
   return result;
 }
 

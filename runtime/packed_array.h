@@ -42,4 +42,9 @@ struct PackedArray {
 PackedArray packed(const PlainArray& array);                          // on this thread
 std::vector<PackedArray> packed(std::span<const PlainArray> arrays);  // on all threads; the same bytes
 
+// For arrays of which some pieces are there at a time: one with the array's form, whose pieces are yet to come, and
+// those from `first_piece` on of each of `to`, made of the rows that `parts` holds, on all threads.
+PackedArray without_pieces(const PlainArray& array);
+void pack_pieces(std::span<const PlainArray> parts, uint64_t first_piece, std::span<PackedArray* const> to);
+
 }  // namespace scree

@@ -33,28 +33,37 @@ struct Source {
   }
 };
 
+// Some particles, one after the other.
 struct Rows {
   const Source& of;
-  size_t first;  // row of the first particle
-  std::span<const ParticleState> particles;
+  size_t first, count;                       // in the engine's order
+  size_t place;                              // of the first in the columns
+  std::span<const ParticleState> particles;  // none where all columns come from contacts
 };
 
-// get(particle, its row, component), for each of the rows.
+// get(k, component), for each of the rows.
 template <class T, class Get>
 void fill(Column& c, const Rows& rows, const Get& get) {
   const uint64_t per_row = std::max<uint64_t>(c.components, 1);
-  char* to = c.values.data() + rows.first * per_row * sizeof(T);
-  for (size_t k = 0; k < rows.particles.size(); ++k)
+  char* to = c.values.data() + rows.place * per_row * sizeof(T);
+  for (size_t k = 0; k < rows.count; ++k)
     for (uint64_t i = 0; i < per_row; ++i, to += sizeof(T)) {
-      const T value = static_cast<T>(get(rows.particles[k], rows.first + k, i));
+      const T value = static_cast<T>(get(k, i));
       std::memcpy(to, &value, sizeof(T));
     }
 }
 
-template <class Get>
-void fill_counts(Column& c, const Rows& rows, const Get& get) {
-  fill<int16_t>(c, rows, [&](const ParticleState&, size_t row, uint64_t) {
-    return rows.of.contacts_known ? static_cast<int>(get(row)) : -1;
+// get(particle, component)
+template <class T, class Get>
+void fill_of_particles(Column& c, const Rows& rows, const Get& get) {
+  fill<T>(c, rows, [&](size_t k, uint64_t i) { return get(rows.particles[k], i); });
+}
+
+// get(sums, particle's row, component)
+template <class T, class Get>
+void fill_of_contacts(Column& c, const Rows& rows, T unknown, const Get& get) {
+  fill<T>(c, rows, [&](size_t k, uint64_t i) {
+    return rows.of.contacts_known ? static_cast<T>(get(rows.of.sums, rows.first + k, i)) : unknown;
   });
 }
 
@@ -68,45 +77,48 @@ struct Field {
   Fill fill;
 };
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr int16_t kUnknownCount = -1;
 constexpr ElementType kReal = element_type<float>(), kCount = element_type<int16_t>();
 
 const std::array kFields = {
     Field{"velocity", 3, false, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill<float>(c, rows, [](const ParticleState& p, size_t, uint64_t i) { return component(p.velocity, i); });
+            fill_of_particles<float>(c, rows,
+                                     [](const ParticleState& p, uint64_t i) { return component(p.velocity, i); });
           }},
     Field{"angular_velocity", 3, false, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill<float>(c, rows, [](const ParticleState& p, size_t, uint64_t i) { return component(p.spin, i); });
+            fill_of_particles<float>(c, rows, [](const ParticleState& p, uint64_t i) { return component(p.spin, i); });
           }},
     Field{"force", 3, true, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill<float>(c, rows, [&](const ParticleState&, size_t row, uint64_t i) {
-              return rows.of.contacts_known ? component(rows.of.sums.force[row], i) : kUnknown;
+            fill_of_contacts(c, rows, kUnknown, [](const ContactSums& sums, size_t row, uint64_t i) {
+              return component(sums.force[row], i);
             });
           }},
     Field{"coordination", 1, true, true, kCount,
           [](Column& c, const Rows& rows) {
-            fill_counts(c, rows, [&](size_t row) { return rows.of.sums.coordination[row]; });
+            fill_of_contacts(c, rows, kUnknownCount,
+                             [](const ContactSums& sums, size_t row, uint64_t) { return sums.coordination[row]; });
           }},
     Field{"wall_contacts", 1, true, true, kCount,
           [](Column& c, const Rows& rows) {
-            fill_counts(c, rows, [&](size_t row) { return rows.of.sums.wall_contacts[row]; });
+            fill_of_contacts(c, rows, kUnknownCount,
+                             [](const ContactSums& sums, size_t row, uint64_t) { return sums.wall_contacts[row]; });
           }},
     Field{"contact_stress", 6, true, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill<float>(c, rows, [&](const ParticleState&, size_t row, uint64_t i) {
-              return rows.of.contacts_known ? rows.of.sums.stress[row][i] : kUnknown;
-            });
+            fill_of_contacts(c, rows, kUnknown,
+                             [](const ContactSums& sums, size_t row, uint64_t i) { return sums.stress[row][i]; });
           }},
     Field{"age", 1, false, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill<float>(c, rows, [&](const ParticleState& p, size_t, uint64_t) { return rows.of.age(p.id); });
+            fill_of_particles<float>(c, rows, [&](const ParticleState& p, uint64_t) { return rows.of.age(p.id); });
           }},
     Field{"mass", 1, false, false, kReal,
           [](Column& c, const Rows& rows) {
-            fill<float>(c, rows, [](const ParticleState& p, size_t, uint64_t) { return p.mass; });
+            fill_of_particles<float>(c, rows, [](const ParticleState& p, uint64_t) { return p.mass; });
           }},
 };
 
@@ -114,22 +126,22 @@ const std::array kFields = {
 template <class Coordinate>
 Field points() {
   return {"Points", 3, false, true, element_type<Coordinate>(), [](Column& c, const Rows& rows) {
-            fill<Coordinate>(c, rows,
-                             [](const ParticleState& p, size_t, uint64_t i) { return component(p.position, i); });
+            fill_of_particles<Coordinate>(c, rows,
+                                          [](const ParticleState& p, uint64_t i) { return component(p.position, i); });
           }};
 }
 const std::array kAlways = {
     Field{"id", 1, false, true, element_type<uint32_t>(),
           [](Column& c, const Rows& rows) {
-            fill<uint32_t>(c, rows, [](const ParticleState& p, size_t, uint64_t) { return p.id; });
+            fill_of_particles<uint32_t>(c, rows, [](const ParticleState& p, uint64_t) { return p.id; });
           }},
     Field{"radius", 1, false, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill<float>(c, rows, [](const ParticleState& p, size_t, uint64_t) { return p.radius; });
+            fill_of_particles<float>(c, rows, [](const ParticleState& p, uint64_t) { return p.radius; });
           }},
     Field{"kind", 1, false, true, element_type<uint8_t>(),
           [](Column& c, const Rows& rows) {
-            fill<uint8_t>(c, rows, [](const ParticleState& p, size_t, uint64_t) { return p.kind; });
+            fill_of_particles<uint8_t>(c, rows, [](const ParticleState& p, uint64_t) { return p.kind; });
           }},
 };
 
@@ -140,17 +152,65 @@ bool needs_double_points(const Case& c) {
   return reach * 0x1p-24 > kMostRounding * smallest_radius(c);
 }
 
-// All columns of some particles before the next: what is made of each is in the cache, and of all at no time.
-void fill_columns(std::span<Column> columns, std::span<const Fill> fills, const Engine& engine, const Source& source) {
+std::vector<Field> fields_of(const Case& c, const std::vector<std::string>& names) {
+  std::vector<Field> fields{needs_double_points(c) ? points<double>() : points<float>()};
+  fields.insert(fields.end(), kAlways.begin(), kAlways.end());
+  for (const Field& field : kFields)
+    if (std::ranges::find(names, field.name) != names.end()) fields.push_back(field);
+  return fields;
+}
+
+Source source_of(const Engine& engine, std::span<const Field> fields) {
+  Source source{engine.knows_contacts(), {}, engine.time(), engine.dt(), engine.insertions()};
+  if (std::ranges::any_of(fields, &Field::from_contacts)) source.sums = contact_sums(engine);
+  return source;
+}
+
+std::vector<Column> empty_columns(std::span<const Field> fields) {
+  std::vector<Column> columns;
+  for (const Field& f : fields)
+    columns.push_back({f.name, f.type, f.components > 1 ? static_cast<uint64_t>(f.components) : 0, {}});
+  return columns;
+}
+
+// Rows of the particles from `begin` to `end`. All columns of some particles before the next: what is made of each is
+// in the cache, and of all at no time.
+void fill_columns(std::span<Column> columns, std::span<const Field> fields, const Engine& engine, const Source& source,
+                  size_t begin, size_t end) {
   constexpr size_t kAtOnce = 1024;
-  const size_t n = engine.count();
-  parallel_for((n + kAtOnce - 1) / kAtOnce, [&](size_t piece) {
-    const size_t first = piece * kAtOnce, last = std::min(n, first + kAtOnce);
+  for (Column& c : columns) c.values.resize((end - begin) * std::max<uint64_t>(c.components, 1) * c.type.size);
+  const bool of_contacts = std::ranges::all_of(fields, &Field::from_contacts);
+  parallel_for((end - begin + kAtOnce - 1) / kAtOnce, [&](size_t part) {
+    const size_t first = begin + part * kAtOnce, last = std::min(end, first + kAtOnce);
     std::vector<ParticleState> particles;
     particles.reserve(last - first);
-    for (size_t k = first; k < last; ++k) particles.push_back(engine.particle(k));
-    for (size_t k = 0; k < columns.size(); ++k) fills[k](columns[k], {source, first, particles});
+    for (size_t k = first; k < last && !of_contacts; ++k) particles.push_back(engine.particle(k));
+    for (size_t k = 0; k < columns.size(); ++k)
+      fields[k].fill(columns[k], {source, first, last - first, first - begin, particles});
   });
+}
+
+PlainArray array_of(const Column& c, const void* values, uint64_t rows) {
+  return plain_array(c.name == "Points" ? c.name : "PointData/" + c.name, c.type, values,
+                     rows * std::max<uint64_t>(c.components, 1), c.components);
+}
+
+// Some pieces of each column, on all threads, before the next.
+void pack_columns(std::span<const Field> fields, const Engine& engine, const Source& source,
+                  std::span<PackedArray* const> to) {
+  if (fields.empty() || engine.count() == 0) return;
+  const uint64_t piece_rows = to[0]->piece_rows, pieces = std::max(2, thread_count());
+  std::vector<Column> columns = empty_columns(fields);
+  for (uint64_t first = 0; first < engine.count(); first += pieces * piece_rows) {
+    const uint64_t last = std::min<uint64_t>(engine.count(), first + pieces * piece_rows);
+    fill_columns(columns, fields, engine, source, first, last);
+    std::vector<PlainArray> parts;
+    for (const Column& c : columns) {
+      parts.push_back(array_of(c, c.values.data(), last - first));
+      parts.back().piece_rows = piece_rows;
+    }
+    pack_pieces(parts, first / piece_rows, to);
+  }
 }
 
 }  // namespace
@@ -169,31 +229,27 @@ std::vector<ParticleFieldForm> particle_field_forms() {
   return forms;
 }
 
-ParticleSnapshot::ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& fields) {
-  const auto wanted = [&](const Field& field) { return std::ranges::find(fields, field.name) != fields.end(); };
-  Source source{engine.knows_contacts(), {}, engine.time(), engine.dt(), engine.insertions()};
-  if (std::ranges::any_of(kFields, [&](const Field& f) { return f.from_contacts && wanted(f); }))
-    source.sums = contact_sums(engine);
-  std::vector<Fill> fills;
-  const auto add = [&](const Field& f) {
-    const uint64_t components = f.components > 1 ? f.components : 0;
-    columns_.push_back({f.name, f.type, components, std::vector<char>(engine.count() * f.components * f.type.size)});
-    fills.push_back(f.fill);
-  };
-  add(needs_double_points(c) ? points<double>() : points<float>());
-  for (const Field& field : kAlways) add(field);
-  for (const Field& field : kFields)
-    if (wanted(field)) add(field);
-  fill_columns(columns_, fills, engine, source);
+ParticleSnapshot::ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& names) {
+  const std::vector<Field> fields = fields_of(c, names);
+  columns_ = empty_columns(fields);
+  fill_columns(columns_, fields, engine, source_of(engine, fields), 0, engine.count());
 }
 
-std::vector<PackedArray> ParticleSnapshot::packed() const {
-  const VertexCells cells(columns_.front().size() / 3);
-  std::vector<PlainArray> arrays = cells.arrays();
-  for (const Column& c : columns_)
-    arrays.push_back(plain_array(&c == &columns_.front() ? c.name : "PointData/" + c.name, c.type, c.values.data(),
-                                 c.size(), c.components));
-  return scree::packed(arrays);
+std::vector<PackedArray> packed_particles(const Case& c, const Engine& engine, const std::vector<std::string>& names) {
+  std::vector<PackedArray> frame = packed(VertexCells(engine.count()).arrays());
+  const size_t cells = frame.size();
+  const std::vector<Field> fields = fields_of(c, names);
+  for (const Column& column : empty_columns(fields))
+    frame.push_back(without_pieces(array_of(column, nullptr, engine.count())));
+  // Those of contacts first, so that the sums of all particles are gone when the others come.
+  for (const bool of_contacts : {true, false}) {
+    std::vector<Field> some;
+    std::vector<PackedArray*> to;
+    for (size_t k = 0; k < fields.size(); ++k)
+      if (fields[k].from_contacts == of_contacts) some.push_back(fields[k]), to.push_back(&frame[cells + k]);
+    pack_columns(some, engine, source_of(engine, some), to);
+  }
+  return frame;
 }
 
 }  // namespace scree

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/case.h"
@@ -32,7 +33,6 @@ std::vector<ParticleFieldForm> particle_field_forms();
 class ParticleSnapshot {
  public:
   ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& fields);
-  std::vector<PackedArray> packed() const;  // the arrays of a field file, packed on all threads
 
   // Values of the field `name` as they are written, row after row.
   struct Column {
@@ -43,9 +43,14 @@ class ParticleSnapshot {
     uint64_t size() const { return values.size() / type.size; }
   };
   const std::vector<Column>& columns() const { return columns_; }  // the first is Points
+  std::vector<Column> take() && { return std::move(columns_); }    // them
 
  private:
   std::vector<Column> columns_;
 };
+
+// The arrays of a field file of this moment: packed on all threads, some particles after the others, so that what they
+// are packed of is never there for all.
+std::vector<PackedArray> packed_particles(const Case& c, const Engine& engine, const std::vector<std::string>& fields);
 
 }  // namespace scree

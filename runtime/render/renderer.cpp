@@ -5,8 +5,8 @@
 
 namespace scree {
 
-Image render(const Scene& scene, const Camera& camera, const PictureSize& size, int samples) {
-  const TilePainter painter(scene, camera, size, samples);
+Image render(Scene scene, const Camera& camera, const PictureSize& size, int samples) {
+  const TilePainter painter(std::move(scene), camera, size, samples);
   Image image(size.width, size.height);
   const size_t columns = (size.width + kTile - 1) / kTile, rows = (size.height + kTile - 1) / kTile;
   parallel_for(columns * rows, [&](size_t k) {

@@ -8,6 +8,6 @@
 namespace scree {
 
 // 1 <= samples <= 64 a pixel. Throws std::invalid_argument for a body that cannot be drawn (geometry/ray_tracer.h).
-Image render(const Scene& scene, const Camera& camera, const PictureSize& size, int samples = kDefaultSamples);
+Image render(Scene scene, const Camera& camera, const PictureSize& size, int samples = kDefaultSamples);
 
 }  // namespace scree

@@ -24,20 +24,37 @@ ParticleFrame empty_frame() {
   return frame;
 }
 
-template <class To>
-std::vector<To> values_in(const ParticleSnapshot::Column& column) {
+// see(number) for each of the column's, one after the other.
+void each_number(const ParticleSnapshot::Column& column, const auto& see) {
   const auto read = [&]<class T>(T) {
-    std::vector<To> values;
-    values.reserve(column.size());
     for (size_t at = 0; at < column.values.size(); at += sizeof(T)) {
       T value;
       std::memcpy(&value, &column.values[at], sizeof(T));
-      values.push_back(static_cast<To>(value));
+      see(value);
     }
-    return values;
   };
-  if (column.type.kind == ElementType::Kind::real) return column.type.size == 8 ? read(double{}) : read(float{});
-  return column.type.size == 1 ? read(uint8_t{}) : column.type.size == 2 ? read(int16_t{}) : read(uint32_t{});
+  if (column.type.kind == ElementType::Kind::real)
+    column.type.size == 8 ? read(double{}) : read(float{});
+  else
+    column.type.size == 1 ? read(uint8_t{}) : column.type.size == 2 ? read(int16_t{}) : read(uint32_t{});
+}
+
+template <class To>
+std::vector<To> values_in(const ParticleSnapshot::Column& column) {
+  std::vector<To> values;
+  values.reserve(column.size());
+  each_number(column, [&](auto value) { values.push_back(static_cast<To>(value)); });
+  return values;
+}
+
+std::vector<Vec3> positions_in(const ParticleSnapshot::Column& points) {
+  std::vector<Vec3> positions(points.size() / 3);
+  size_t k = 0;
+  each_number(points, [&](auto x) {
+    Vec3& at = positions[k / 3];
+    (k % 3 == 0 ? at.x : k % 3 == 1 ? at.y : at.z) = static_cast<double>(x), ++k;
+  });
+  return positions;
 }
 
 std::string one_of_names(TableReader& t, const char* key, const std::string& what, const char* fallback,
@@ -135,21 +152,19 @@ ParticleFrame frame_now(const Case& c, const Engine& engine, const std::string& 
   const ParticleFrame known = empty_frame();
   std::vector<std::string> fields;
   if (const ParticleField* field = field_of(known, quantity)) fields.push_back(field->name);
-  const ParticleSnapshot snapshot(c, engine, fields);
   ParticleFrame frame;
   frame.time = engine.time();
-  for (const ParticleSnapshot::Column& column : snapshot.columns()) {
+  // Each column goes as soon as it is read: of ten million grains they are 330 MB.
+  for (ParticleSnapshot::Column& given : ParticleSnapshot(c, engine, fields).take()) {
+    const ParticleSnapshot::Column column = std::move(given);
     if (column.name == "id") continue;
-    if (column.name == "Points") {
-      frame.positions.reserve(column.size() / 3);
-      const std::vector<double> x = values_in<double>(column);
-      for (size_t k = 0; k < x.size(); k += 3) frame.positions.push_back({x[k], x[k + 1], x[k + 2]});
-    } else if (column.name == "radius") {
+    if (column.name == "Points")
+      frame.positions = positions_in(column);
+    else if (column.name == "radius")
       frame.radii = values_in<float>(column);
-    } else {
-      const int components = static_cast<int>(std::max<uint64_t>(column.components, 1));
-      frame.fields.push_back({column.name, components, values_in<float>(column)});
-    }
+    else
+      frame.fields.push_back(
+          {column.name, static_cast<int>(std::max<uint64_t>(column.components, 1)), values_in<float>(column)});
   }
   return frame;
 }

@@ -17,7 +17,7 @@ struct CutPlane {
 
 struct Scene {
   std::vector<Ball> balls;
-  std::vector<Rgb> ball_colours;    // one for each ball
+  std::vector<Srgb> ball_colours;   // one for each ball
   std::vector<Capsule> fibres;      // metal
   std::vector<Quad> walls;          // glass, whatever they are made of
   std::vector<Segment> wall_edges;  // drawn as lines

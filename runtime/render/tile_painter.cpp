@@ -81,6 +81,25 @@ double mean_radius(const auto& bodies) {
   return bodies.empty() ? 0 : sum / static_cast<double>(bodies.size());
 }
 
+// How far behind its target an orthographic eye is, m: a plane that everything is in front of.
+double in_front_of_all(const Scene& scene, const Camera& camera) {
+  double back = 0;
+  const auto include = [&](const Vec3& x, double radius) { back = std::max(back, norm(x - camera.target) + radius); };
+  for (const Ball& b : scene.balls) include(b.centre, b.radius);
+  for (const Capsule& c : scene.fibres) include(c.axis.a, c.radius), include(c.axis.b, c.radius);
+  for (const Quad& q : scene.walls)
+    for (const Vec3& corner : q.corners) include(corner, 0);
+  return 1.01 * back;
+}
+
+// to_linear() of each byte: a power is too much for each ray.
+const std::array<float, 256> kLinear = [] {
+  std::array<float, 256> linear{};
+  for (size_t k = 0; k < linear.size(); ++k) linear[k] = to_linear(static_cast<float>(k) / 255.0f);
+  return linear;
+}();
+Rgb linear_of(const Srgb& c) { return {kLinear[c[0]], kLinear[c[1]], kLinear[c[2]]}; }
+
 }  // namespace
 
 struct TilePainter::Tile {
@@ -92,8 +111,9 @@ struct TilePainter::Tile {
   std::vector<Rgb> colours;  // a sample each
 };
 
-TilePainter::TilePainter(const Scene& scene, const Camera& camera, const PictureSize& size, int samples)
-    : scene_(scene),
+TilePainter::TilePainter(Scene scene, const Camera& camera, const PictureSize& size, int samples)
+    : ball_colours_(std::move(scene.ball_colours)),
+      wall_style_(scene.wall_style),
       camera_(camera),
       size_(size),
       samples_(samples),
@@ -101,39 +121,30 @@ TilePainter::TilePainter(const Scene& scene, const Camera& camera, const Picture
       glass_tiles_(camera, size, kTile) {
   for (const Ball& ball : scene.balls) solid_tiles_.add(ball);
   for (const Capsule& fibre : scene.fibres) solid_tiles_.add(fibre);
+  const double back = camera.distance > 0 ? camera.distance : in_front_of_all(scene, camera);
+  const double ball = mean_radius(scene.balls), fibre = mean_radius(scene.fibres);
+  reach_ = static_cast<float>(std::max(kReachInBalls * ball, kReachInFibres * fibre));
+  start_ = static_cast<float>(1e-3 * (ball > 0 ? ball : fibre));
 
-  solid_ = make_embree_tracer({scene.balls, scene.fibres, {}});
+  solid_ = make_embree_tracer({std::move(scene.balls), std::move(scene.fibres), {}});
   const double pixel = camera.height / size.height;
   if (scene.wall_style != WallStyle::hidden && !scene.walls.empty()) {
     const double edge = kEdgePixels * pixel * std::max(1.0, size.height / 1080.0);
-    const std::vector<Capsule> edges = lines(scene.wall_edges, edge);
-    glass_ = make_embree_tracer({{}, edges, scene.walls});
+    std::vector<Capsule> edges = lines(scene.wall_edges, edge);
     for (const Capsule& line : edges) glass_tiles_.add(line);
     for (const Quad& wall : scene.walls) glass_tiles_.add(wall);
+    glass_ = make_embree_tracer({{}, std::move(edges), std::move(scene.walls)});
     glass_shift_ = to_float(solid_->origin() - glass_->origin());
   }
   step_right_ = to_float(pixel * camera.right), step_down_ = to_float(-pixel * camera.up);
   forward_ = to_float(camera.forward);
-  // An orthographic eye is a plane in front of everything.
-  double back = camera.distance;
-  if (back == 0) {
-    for (const Ball& b : scene.balls) back = std::max(back, norm(b.centre - camera.target) + b.radius);
-    for (const Capsule& c : scene.fibres)
-      back = std::max({back, norm(c.axis.a - camera.target) + c.radius, norm(c.axis.b - camera.target) + c.radius});
-    for (const Quad& q : scene.walls)
-      for (const Vec3& corner : q.corners) back = std::max(back, norm(corner - camera.target));
-    back *= 1.01;
-  }
   eye_ = solid_->local(camera.target - back * camera.forward);
-  to_light_ = to_float(scree::unit(-0.45 * camera.right + 0.80 * camera.up - 0.75 * camera.forward));
-  light_u_ = to_float(perpendicular_to(scree::unit(-0.45 * camera.right + 0.80 * camera.up - 0.75 * camera.forward)));
-  light_v_ = cross(to_light_, light_u_);
+  const Vec3 to_light = scree::unit(-0.45 * camera.right + 0.80 * camera.up - 0.75 * camera.forward);
+  to_light_ = to_float(to_light);
+  light_u_ = to_float(perpendicular_to(to_light)), light_v_ = cross(to_light_, light_u_);
   sky_ = to_float(scree::unit(camera.up - 0.5 * camera.forward));
   for (const CutPlane& cut : scene.cuts)
     cuts_.push_back({to_float(cut.normal), static_cast<float>(cut.offset - dot(cut.normal, solid_->origin()))});
-  const double ball = mean_radius(scene.balls), fibre = mean_radius(scene.fibres);
-  reach_ = static_cast<float>(std::max(kReachInBalls * ball, kReachInFibres * fibre));
-  start_ = static_cast<float>(1e-3 * (ball > 0 ? ball : fibre));
 }
 
 Ray TilePainter::eye_ray(double x, double y) const {
@@ -170,7 +181,7 @@ TilePainter::Surface TilePainter::surface_at(const Ray& ray, const BodyId& body,
   return {point,
           solid_->normal(body, point),
           -ray.direction,
-          ball ? scene_.ball_colours[body.index] : kMetal,
+          ball ? linear_of(ball_colours_[body.index]) : kMetal,
           ball ? kBallShine : kMetalShine,
           !ball,
           0};
@@ -260,7 +271,7 @@ void TilePainter::lay_walls_over(Tile& tile) const {
   for (Ray& ray : rays) ray.origin += glass_shift_;
   std::vector<Crossing> crossings;
   glass_->all(rays, crossings);
-  const int style = scene_.wall_style == WallStyle::transparent ? 0 : 1;
+  const int style = wall_style_ == WallStyle::transparent ? 0 : 1;
   for (size_t k = crossings.size(); k-- > 0;) {  // from the farthest of each ray
     const Crossing& c = crossings[k];
     Rgb& colour = tile.colours[c.ray];

@@ -13,7 +13,7 @@ inline constexpr int kTile = 16;  // pixels: its rays and hits stay in a core's 
 
 class TilePainter {
  public:
-  TilePainter(const Scene& scene, const Camera& camera, const PictureSize& size, int samples);
+  TilePainter(Scene scene, const Camera& camera, const PictureSize& size, int samples);
 
   // Paints the tile whose upper left pixel is (x0, y0). Thread-safe for different tiles.
   void paint(Image& image, int x0, int y0) const;
@@ -42,7 +42,8 @@ class TilePainter {
   void leave(Ray& ray) const;                         // from a point that is left: ends where it meets a cut
   Surface surface_at(const Ray& ray, const BodyId& body, float distance) const;
 
-  const Scene& scene_;
+  std::vector<Srgb> ball_colours_;
+  WallStyle wall_style_;
   Camera camera_;
   PictureSize size_;
   int samples_;

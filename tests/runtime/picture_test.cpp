@@ -16,7 +16,7 @@ namespace scree {
 namespace {
 
 constexpr PictureSize kSize{160, 120};
-constexpr Rgb kRed{0.8f, 0.1f, 0.1f}, kGreen{0.1f, 0.7f, 0.1f};
+constexpr Srgb kRed{231, 89, 89}, kGreen{89, 218, 89};
 
 // Along +y, 0.12 m high: a pixel is a millimetre.
 Camera millimetres() {
@@ -25,7 +25,7 @@ Camera millimetres() {
   return camera;
 }
 
-Scene scene_of(std::vector<Ball> balls, const Rgb& colour = kRed) {
+Scene scene_of(std::vector<Ball> balls, const Srgb& colour = kRed) {
   Scene scene;
   scene.balls = std::move(balls);
   scene.ball_colours.assign(scene.balls.size(), colour);
