@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "kernels/parallel.h"
 #include "kernels/periodic.h"
@@ -319,6 +320,16 @@ void Domain<Real>::visit_contacts(const SeeContacts& see, Contacts which) const 
     });
     for (size_t k = 0; k < last - first; ++k) see(found[k]);
   }
+}
+
+template <class Real>
+double Domain<Real>::elastic_energy() const {
+  if (!lists_valid_) return 0;
+  std::vector<double> of_chunks(contacts_.size());
+  parallel_for(contacts_.size(), [&](size_t k) {
+    visit_contacts_of(k, Contacts::all, Across::once, [&](const ContactState& c) { of_chunks[k] += c.elastic_energy; });
+  });
+  return std::accumulate(of_chunks.begin(), of_chunks.end(), 0.0);
 }
 
 template <class Real>

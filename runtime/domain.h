@@ -50,6 +50,7 @@ class Domain final : public Engine {
   ParticleState particle(size_t k) const override { return state(k); }
   void visit_contacts_by_particles(const SeeContactOf& see) const override;
   bool knows_contacts() const override { return lists_valid_; }
+  double elastic_energy() const override;
   const std::vector<Insertion>& insertions() const override { return insertions_; }
 
  private:

@@ -32,16 +32,17 @@ EnergyBalance balance_of(const Engine& engine, const Case& c) {
   if (!falls_round)
     b.potential = engine.sum([&](const ParticleState& p) { return potential_energy(p, c.gravity); }) +
                   ledger.removed_potential - ledger.inserted_potential;
-  for (const ContactState& contact : engine.contacts()) b.elastic += contact.elastic_energy;
+  b.elastic = engine.elastic_energy();
   b.time_stepping = steps.second_order + b.elastic - steps.elastic;
   b.energy_residual = b.kinetic + b.removed_kinetic + b.elastic + b.damping + b.friction + b.rolling -
                       (b.inserted_kinetic + b.gravity + b.walls + b.time_stepping);
   b.turned_over = std::abs(b.gravity) + std::abs(b.walls) + b.inserted_kinetic;
 
   const Vec3 gravity = vector(steps.gravity_impulse), solid = vector(steps.solid_impulse);
-  b.momentum_residual =
-      momentum_of(engine) + vector(ledger.removed_momentum) - vector(ledger.inserted_momentum) - gravity - solid;
-  b.impulse_turned_over = norm(gravity) + norm(solid) + norm(vector(ledger.inserted_momentum));
+  b.momentum = momentum_of(engine), b.gravity_impulse = gravity, b.solid_impulse = solid;
+  b.inserted_momentum = vector(ledger.inserted_momentum), b.removed_momentum = vector(ledger.removed_momentum);
+  b.momentum_residual = b.momentum + b.removed_momentum - b.inserted_momentum - gravity - solid;
+  b.impulse_turned_over = norm(gravity) + norm(solid) + norm(b.inserted_momentum);
   return b;
 }
 
@@ -49,12 +50,14 @@ std::string complaint(const EnergyBalance& b) {
   if (b.closes()) return "";
   return fmt::format(
       "the ledger does not close: {:.2g} of the energy and {:.2g} of the momentum turned over are not "
-      "accounted for, more than the tolerance {:g}: do not trust the results, and try a smaller [time] "
-      "step",
-      b.energy_residual_share(), b.momentum_residual_share(), kLedgerTolerance);
+      "accounted for (tolerance {:g}), {:.2g} of the energy come of finite steps (tolerance {:g}): do not trust the "
+      "results, and try a smaller [time] step",
+      b.energy_residual_share(), b.momentum_residual_share(), kLedgerTolerance, b.time_stepping_share(),
+      kTimeSteppingTolerance);
 }
 
 nlohmann::json to_json(const EnergyBalance& b) {
+  const auto list = [](const Vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
   return {{"kinetic_J", b.kinetic},
           {"inserted_kinetic_J", b.inserted_kinetic},
           {"removed_kinetic_J", b.removed_kinetic},
@@ -66,9 +69,16 @@ nlohmann::json to_json(const EnergyBalance& b) {
           {"dissipated_by_friction_J", b.friction},
           {"dissipated_by_rolling_J", b.rolling},
           {"time_stepping_J", b.time_stepping},
+          {"momentum_Ns", list(b.momentum)},
+          {"inserted_momentum_Ns", list(b.inserted_momentum)},
+          {"removed_momentum_Ns", list(b.removed_momentum)},
+          {"gravity_impulse_Ns", list(b.gravity_impulse)},
+          {"walls_and_fibres_impulse_Ns", list(b.solid_impulse)},
           {"energy_residual_share", b.energy_residual_share()},
           {"momentum_residual_share", b.momentum_residual_share()},
           {"tolerance", kLedgerTolerance},
+          {"time_stepping_share", b.time_stepping_share()},
+          {"time_stepping_tolerance", kTimeSteppingTolerance},
           {"closes", b.closes()}};
 }
 

@@ -172,7 +172,8 @@ class Engine {
   // cost a fraction of all.
   enum class Contacts { all, with_solids };
   virtual std::vector<ContactState> contacts(Contacts which = Contacts::all) const = 0;
-  virtual bool knows_contacts() const = 0;  // false: between those
+  virtual bool knows_contacts() const = 0;    // false: between those
+  virtual double elastic_energy() const = 0;  // J, of all contacts' normal springs
   // The same list in pieces, so that not all of it is in memory at once (128 B each, some three a particle).
   using SeeContacts = std::function<void(std::span<const ContactState>)>;
   virtual void visit_contacts(const SeeContacts& see, Contacts which = Contacts::all) const = 0;

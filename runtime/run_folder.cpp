@@ -19,6 +19,14 @@ namespace scree {
 
 namespace {
 
+void sync(const std::filesystem::path& path, int flags) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | flags);
+  const bool synced = descriptor >= 0 && (fsync(descriptor) == 0 || errno == EINVAL);  // EINVAL: nothing to force here
+  const int why = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!synced) throw RunError(fmt::format("cannot write {}: {}", path.string(), std::strerror(why)));
+}
+
 // The number that the run that holds the lock wrote into it.
 std::string holder(int descriptor) {
   char text[32] = {};
@@ -62,12 +70,8 @@ std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folde
   return found;
 }
 
-void sync_folder(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && (fsync(descriptor) == 0 || errno == EINVAL);  // EINVAL: nothing to force here
-  const int why = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!synced) throw RunError(fmt::format("cannot write {}: {}", folder.string(), std::strerror(why)));
-}
+void sync_folder(const std::filesystem::path& folder) { sync(folder, O_DIRECTORY); }
+
+void sync_file(const std::filesystem::path& file) { sync(file, 0); }
 
 }  // namespace scree

@@ -32,5 +32,6 @@ std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folde
 
 // Forces a folder's list of names to the disk, which a rename is only then safe on. Throws RunError.
 void sync_folder(const std::filesystem::path& folder);
+void sync_file(const std::filesystem::path& file);  // and its content
 
 }  // namespace scree

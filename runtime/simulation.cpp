@@ -73,6 +73,8 @@ nlohmann::json summary_of(const Case& c, const Simulation& simulation, const Run
                            {"particles", r.particles}});
   j["checkpoints"] = {{"written", simulation.checkpoints_written()}, {"seconds", simulation.checkpoint_seconds()}};
   j["resumed_from"] = simulation.resumed_from().empty() ? nlohmann::json() : nlohmann::json(simulation.resumed_from());
+  j["energy_watch"] = {{"looks", simulation.watch().energy_looks()},
+                       {"largest_share_of_bound", simulation.watch().largest_energy_share()}};
   if (c.output.energy_ledger) j["energy"] = to_json(balance_of(e, c));
   for (const auto& o : simulation.observers())
     if (const nlohmann::json own = o->summary(); !own.is_null()) j[o->name()] = own;
@@ -196,6 +198,7 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     if (options.resume) simulation = resumed(c, options, log);
     if (!simulation) {
       write_file(options.out / "case.toml", write_case(c));
+      sync_file(options.out / "case.toml"), sync_folder(options.out);  // checkpoints are nothing without it
       log->info("{}", describe_case(c));
       for (const std::string& warning : time_step_warnings(c)) log->warn(warning);
       simulation = std::make_unique<Simulation>(c, options, log);

@@ -132,6 +132,7 @@ class Simulation {
   const std::string& resumed_from() const { return resumed_from_; }
   int checkpoints_written() const { return checkpoints_written_; }
   double checkpoint_seconds() const { return checkpoint_seconds_; }
+  const Watch& watch() const { return watch_; }
   double wall_seconds() const { return wall_before_ + seconds_since(start_); }
 
   double discharged() const {

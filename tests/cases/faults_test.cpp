@@ -40,7 +40,7 @@ TEST_F(Faults, KilledAtAnyMomentTheRunEndsTheSame) {
 }
 
 // Within each kind of stage that takes steps. On a busy machine a signal may come after the stage's end: it is tried
-// again. Fill, read and open take no time: what is asked for in them is heeded when the next stage begins.
+// again. Read and open take no time: what is asked for in them is heeded when the next stage begins.
 TEST_F(Faults, AskedToStopInAnyStageTheRunGoesOn) {
   int signal = SIGTERM;
   for (const std::string stage : {"fall", "pour", "settle", "drain"}) {
@@ -64,6 +64,26 @@ TEST_F(Faults, AskedToStopInAnyStageTheRunGoesOn) {
     expect_resumes(out);
     signal = signal == SIGTERM ? SIGINT : SIGTERM;
   }
+}
+
+// A fill takes no step, but millions take minutes: this one of 32,067 some seconds. It begins anew.
+TEST_F(Faults, AskedToStopWithinAFillTheRunGoesOn) {
+  const fs::path whole = path("whole"), out = path("stopped");
+  const auto command = [&](const fs::path& folder) {
+    std::vector<std::string> a{"run", case_path("olhx/demo.toml"), "--out", folder.string()};
+    for (const char* set : {"stage.settle.time=2e-4", "stage.drain.max_time=2e-4", "output.fields.stage_ends=false"})
+      a.insert(a.end(), {"--set", set});
+    return a;
+  };
+  ASSERT_EQ(execute(command(whole)), 0) << said_;
+  Process p(command(out), path("said"));
+  wait_until([&] { return text_of(out / "run.log").find("stage 'fill' (fill) begins") != std::string::npos; });
+  p.send(SIGTERM);
+  ASSERT_EQ(p.wait(), 130) << p.said();
+  EXPECT_EQ(read_summary(out)["stages"].back()["name"], "fill");
+  EXPECT_EQ(read_summary(out)["particles"], 0);
+  ASSERT_EQ(execute({"resume", out.string()}), 0) << said_;
+  expect_same_results(out, whole);
 }
 
 // Half a checkpoint lies there under a name that nothing takes up.

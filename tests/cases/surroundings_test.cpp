@@ -152,6 +152,7 @@ TEST_F(Faults, MemoryThatRunsOutStopsTheRunWithAMessage) {
     (a.code == 0 ? high : low) = middle;
   }
   EXPECT_GT(stopped, 0);
+  EXPECT_GT(resumed, 0);
   RecordProperty("stopped", stopped);
   RecordProperty("resumed", resumed);
 }
