@@ -32,6 +32,7 @@ void write_average_vtkhdf(const std::filesystem::path& path, const CoarseGrid& g
     const double spacing[] = {grid.spacing.x, grid.spacing.y, grid.spacing.z};
     const double direction[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     file.attribute("WholeExtent", extent);
+    file.attribute("KernelHalfWidth", std::span(&grid.width, 1));
     file.attribute("Origin", origin), file.attribute("Spacing", spacing), file.attribute("Direction", direction);
     const auto one = [&](const char* name, const std::vector<double>& values) {
       write_field(file, grid, name, 1, [&](size_t k, uint64_t) { return values[k]; });

@@ -3,6 +3,7 @@
 //
 // The file is ImageData with a point in the middle of each cell: VTK 9.1 reads cell data of images as if there were as
 // many cells as points, and fails. A field's sum over the points times the product of the spacings is its integral.
+// The attribute KernelHalfWidth (m) is that of Lucy's kernel (kernels/coarse_grain.h).
 #pragma once
 
 #include <filesystem>

@@ -132,7 +132,9 @@ void write_average_pictures(const std::filesystem::path& folder, const std::stri
     const double largest = nearly_largest(values);
     PanelPicture picture;
     picture.title = fmt::format("{}{}", q.name, *q.unit ? fmt::format(", {}", q.unit) : "");
-    picture.note = "mean over the window; outlined: fibres; grey: no grains";
+    picture.note =
+        fmt::format("mean over the window by Lucy's kernel, half width {:.2g} mm; outlined: fibres; grey: no grains",
+                    1e3 * grid.width);
     picture.scale = {q.name, q.unit, 0, largest > 0 ? largest : 1, ColourMap::sequential, {}};
     for (int a = 0; a < 2; ++a) picture.panels.push_back(panel_of(slices[a], cuts[a], picture.scale, shown));
     write_png(folder / fmt::format("{}_{}.png", name, q.file), draw(picture));

@@ -7,6 +7,7 @@
 #include "runtime/junctions.h"
 #include "runtime/residence_pictures.h"
 #include "runtime/results.h"
+#include "runtime/timer.h"
 
 namespace scree {
 
@@ -109,6 +110,7 @@ void Residence::see(Track& track, const ParticleState& p, double time) {
 }
 
 void Residence::look(const RunView& run) {
+  const Timer timer(seconds_);
   const double time = run.engine.time();
   counting_ = counts(run);
   ++looks_;
@@ -143,6 +145,7 @@ void Residence::finish(const RunView& run) {
   summary_ = {{"entry_z_m", settings_.entry},
               {"exit_z_m", settings_.exit},
               {"resolution_s", settings_.interval},
+              {"seconds", seconds_},
               {"entered_kg", entered},
               {"went_through_kg", times.mass()},
               {"grains_through", times.taken.size()},
@@ -154,7 +157,7 @@ void Residence::finish(const RunView& run) {
   const std::vector<Retained> retained = find_retained(run);
   write_times(run.out / "residence.csv", bins);
   if (!retained.empty()) write_retained(run.out / "retained.csv", retained);
-  write_residence_pictures(run.out / "residence", run.c, bins, retained);
+  write_residence_pictures(run.out / "residence", run.c, bins, retained, entered);
 }
 
 std::vector<Retained> Residence::find_retained(const RunView& run) {

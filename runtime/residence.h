@@ -83,6 +83,7 @@ class Residence final : public Observer {
   double last_look_ = 0;  // s
   bool counting_ = false;
   std::vector<Track> tracks_;
+  double seconds_ = 0;  // wall-clock, of all looks
   nlohmann::json summary_;
 };
 

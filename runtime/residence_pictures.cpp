@@ -23,12 +23,14 @@ constexpr int kHistogramWidth = 760, kHistogramHeight = 420;
 constexpr double kHeadroom = 1.05;  // of the tallest bar
 
 // Bars, coloured by the share of the mass that has come through by the end of their bin.
-void draw_times(const std::filesystem::path& path, const std::vector<ResidenceBin>& bins) {
+void draw_times(const std::filesystem::path& path, const std::vector<ResidenceBin>& bins, double entered) {
   double all = 0, tallest = 0;
   for (const ResidenceBin& bin : bins) all += bin.mass, tallest = std::max(tallest, bin.mass);
   PanelPicture picture;
   picture.title = fmt::format("residence times, mass in bins of {:.4g} s", bins[0].to - bins[0].from);
-  picture.note = "colour: share of the mass that took no longer, %";
+  picture.note = fmt::format(
+      "of {:.3g} mg that entered {:.3g} % had come through at the end; colour: share of it that took no longer, %",
+      entered / kMilligram, 100 * all / entered);
   picture.scale = {"share", "%", 0, 100, ColourMap::sequential, {}};
   std::vector<double> shares;
   double sum = 0;
@@ -133,7 +135,7 @@ void draw_retained(const std::filesystem::path& path, const Case& c, const std::
     for (const Place& place : seen) most = std::max(most, place.mass / kMilligram);
   for (const Retained& r : retained) all += r.mass, along += r.mass_along_fibres();
   PanelPicture picture;
-  picture.title = "mass left at each junction, mg";
+  picture.title = "mass at each junction at the end of the run, mg";
   picture.note = fmt::format(
       "by the nearest junction, summed along the line of sight; in all {:.3g} mg, {:.3g} mg of "
       "it along the fibres or still falling; white: none",
@@ -156,10 +158,10 @@ void draw_retained(const std::filesystem::path& path, const Case& c, const std::
 }  // namespace
 
 void write_residence_pictures(const std::filesystem::path& folder, const Case& c, const std::vector<ResidenceBin>& bins,
-                              const std::vector<Retained>& retained) {
+                              const std::vector<Retained>& retained, double entered) {
   if (bins.empty() && retained.empty()) return;
   make_folder(folder);
-  if (!bins.empty()) draw_times(folder / "times.png", bins);
+  if (!bins.empty()) draw_times(folder / "times.png", bins, entered);
   if (!retained.empty()) draw_retained(folder / "retained.png", c, retained);
 }
 

@@ -23,7 +23,7 @@ void add_touches(const TouchSurface& surface, std::span<const ContactState> cont
     const double normal = dot(k.force, k.normal);
     ++sums.contacts;
     sums.force += normal;
-    sums.rubbing += std::abs(dot(k.force - normal * k.normal, k.slip));
+    sums.rubbing -= dot(k.force - normal * k.normal, k.slip);
     touched.push_back(cell);
   }
   std::ranges::sort(touched);

@@ -15,7 +15,7 @@ struct TouchSums {
   uint64_t touched = 0;   // looks in which a grain touched it
   uint64_t contacts = 0;  // grains that touched it, summed over looks
   double force = 0;       // N, normal, summed over contacts
-  double rubbing = 0;     // W, |tangential force . slip|, summed over contacts
+  double rubbing = 0;  // W, -(tangential force) . slip, summed over contacts: one that sticks gives back what it took
 
   template <class Visit>
   static void for_each_field(const Visit& visit) {

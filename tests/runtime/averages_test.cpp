@@ -68,6 +68,29 @@ TEST(Averages, HoldTheMassMomentumAndVolumeOfTheGrainsInside) {
   EXPECT_NEAR(flux * cell / expected_momentum, 1, 1e-5);
 }
 
+// Grains fly in and out between three looks: the field's integral is the mean of what was in.
+TEST(Averages, OverAWindowHoldTheMeanMassThatWasInside) {
+  const Case c = open_case();
+  const auto engine = make_engine(c);
+  std::vector<ParticleState> grains;  // apart from each other, and flying side by side
+  for (double z = -1e-3; z < 7e-3; z += 6e-4)
+    for (double y = -1e-3; y < 6e-3; y += 6e-4)
+      for (double x = -1.7e-3; x < 5e-3; x += 6e-4) grains.push_back(grain({x, y, z}, 2e-4, {2, 0.5, -1}));
+  engine->insert(grains);
+  AverageSums sums(grid_of(average_over(kBox, 4e-4, 8e-4), c));
+  std::vector<double> inside;
+  for (int look = 0; look < 3; ++look) {
+    sums.add(*engine, c);
+    inside.push_back(engine->sum([](const ParticleState& p) { return contains(kBox, p.position) ? p.mass : 0; }));
+    for (int k = 0; k < 40; ++k) engine->step();
+  }
+  EXPECT_GT(std::abs(inside[2] / inside[0] - 1), 0.01) << "nothing went in or out";
+  const double mean = (inside[0] + inside[1] + inside[2]) / 3;
+  double mass = 0;
+  for (const double density : sums.fields(c).bulk_density) mass += density * sums.grid().cell_volume();
+  EXPECT_NEAR(mass / mean, 1, 1e-6);
+}
+
 TEST(Averages, OfAUniformFlowAreItsVelocityAndNoTemperature) {
   const Case c = open_case();
   const Vec3 v{0.25, -0.5, 1};  // as they are in single precision

@@ -247,7 +247,7 @@ size_t pixels_of(const Image& image, const Srgb& colour, int from, int to) {
 TEST(ResidencePictures, BarsAreAsTallAsTheMassAndColouredByTheShareThatIsThrough) {
   const testing::Folder folder;
   write_residence_pictures(folder.path("residence"), falling_case(), {{0, 0.1, 1e-6}, {0.1, 0.2, 0}, {0.2, 0.3, 3e-6}},
-                           {});
+                           {}, 5e-6);
   const Image image = read_png(fs::path(folder.path("residence")) / "times.png");
   const int bar = image.width() - 100;  // where the colour bar begins, at the earliest
   const size_t first = pixels_of(image, colour_of(ColourMap::sequential, 0.25), 0, bar);
@@ -270,7 +270,7 @@ TEST(ResidencePictures, JunctionsAreWhereTheyAreAndColouredByWhatIsLeft) {
       r.mass = norm(r.at - heavy) < 1e-6 ? 4e-6 : norm(r.at - light) < 1e-6 ? 2e-6 : 0;
       r.grains = r.mass > 0;
     }
-    write_residence_pictures(folder.path("residence"), c, {}, retained);
+    write_residence_pictures(folder.path("residence"), c, {}, retained, 0);
     return read_png(fs::path(folder.path("residence")) / "retained.png");
   };
   const Srgb most = colour_of(ColourMap::sequential, 1), half = colour_of(ColourMap::sequential, 0.5);

@@ -17,19 +17,23 @@ const residenceHistogram = (runs) => {
     series: having.map(({ run }, k) => ({ label: runs.length > 1 ? run.label : "share", values: ys[k], colour: colourOf(run.colour), steps: curves.length === 1, text: (v) => `${significant(v)} 1/s` })) });
 };
 
-const residenceFacts = (r) => facts([
+// What had entered and neither come through nor been counted out: where it is much, the run ended while grains flowed.
+const kManyInside = 0.05;
+const insideShare = (r) => (r.entered_kg > 0 && isNumber(r.went_through_kg) ? 1 - r.went_through_kg / r.entered_kg : 0);
+
+const residenceFacts = (r) => [insideShare(r) > kManyInside && note(`${significant(100 * insideShare(r), 2)} % of what entered was still inside when the run ended: the times are of those that were through by then, the quicker ones, and what is inside is not what would stay. A drain to the end (discharged_fraction = 1) tells both.`), facts([
   ["Went through", isNumber(r.went_through_kg) && `${withUnit("mass", r.went_through_kg)} of ${withUnit("mass", r.entered_kg)} that entered`],
   ["Mean", isNumber(r.mean_s) && withUnit("time", r.mean_s)],
   ["10 %, half, 90 %", isNumber(r.median_s) && `within ${[r.p10_s, r.median_s, r.p90_s].map((t) => withUnit("time", t)).join(", ")}`],
-  ["Left behind", isNumber(r.retained_kg) && `${withUnit("mass", r.retained_kg)} (${grouped(r.retained_grains)} grains), ${withUnit("mass", r.retained_at_no_junction_kg ?? 0)} of it at no junction`],
+  [insideShare(r) > kManyInside ? "Inside at the end" : "Left behind", isNumber(r.retained_kg) && `${withUnit("mass", r.retained_kg)} (${grouped(r.retained_grains)} grains), ${withUnit("mass", r.retained_at_no_junction_kg ?? 0)} of it at no junction`],
   ["Of it", isNumber(r.retained_near_junctions_kg) && `${withUnit("mass", r.retained_near_junctions_kg)} near the junctions (nearer than to a fibre's middle)${isNumber(r.retained_along_fibres_kg) ? `, ${withUnit("mass", r.retained_along_fibres_kg)} along the fibres between them or still falling` : ""}`],
-]);
+])];
 
 const retainedTable = (run) => {
   const t = columnsOf(run, "retained");
   if (!t?.mass_kg) return null;
   const order = t.mass_kg.map((_, k) => k).filter((k) => t.mass_kg[k] > 0).sort((a, b) => t.mass_kg[b] - t.mass_kg[a]);
-  if (order.length === 0) return note("Nothing stayed at a junction.");
+  if (order.length === 0) return note("Nothing is at a junction.");
   return [
     table([{ title: "Junction at x, y, z, mm" }, { title: "Mass, mg", number: true }, { title: "Grains", number: true }],
       order.slice(0, kMostJunctions).map((k) => [[t.x_m, t.y_m, t.z_m].map((x) => plain(1e3 * x[k])).join(", "), significant(1e6 * t.mass_kg[k]), grouped(t.grains?.[k])])),
@@ -49,6 +53,6 @@ addSection({
     const numbers = perRun(runs, (run) => run.summary?.residence && residenceFacts(run.summary.residence));
     const histogram = residenceHistogram(runs), retained = perRun(runs, retainedTable), pictures = gallery(runs, "residence");
     if (numbers.length === 0 && !histogram && retained.length === 0 && !pictures) return null;
-    return [numbers, histogram, retained.length > 0 && [h("h3", {}, "Left at the junctions"), retained], pictures];
+    return [numbers, histogram, retained.length > 0 && [h("h3", {}, "At the junctions at the end"), retained], pictures];
   },
 });
