@@ -1,5 +1,6 @@
-// The only file that names the SIMD library (Google Highway, static dispatch: a translation unit's compiler flags
-// choose the instruction set, and its types live in a namespace of that set, so several sets link into one program).
+// The only file that names an instruction set, or the SIMD library (Google Highway, static dispatch: a translation
+// unit's compiler flags choose the instruction set, and its types live in a namespace of that set, so several sets link
+// into one program).
 //
 // Why Highway: transposes of 64-byte rows need shuffles, which std::experimental::simd does not have, and exact fused
 // multiply-adds and square roots, which xsimd 8 emulates on some targets. Everything used here is IEEE-exact (no
@@ -336,4 +337,24 @@ struct NativeLanes {
 };
 
 }  // namespace HWY_NAMESPACE
+
+// ---- the sets of instructions: every machine of the build's architecture has the native one, some have the wide one
+// --------------------------------------------------------------------------------------------------------
+#if defined(__x86_64__)
+inline constexpr const char *kNativeSet = "avx2", *kWideSet = "avx512";
+#elif defined(__aarch64__)
+inline constexpr const char *kNativeSet = "neon", *kWideSet = nullptr;
+#else
+inline constexpr const char *kNativeSet = "native", *kWideSet = nullptr;
+#endif
+inline constexpr const char* kScalarSet = "scalar";
+
+#if defined(__x86_64__)
+static inline bool machine_has_wide_set() {  // x86-64-v4
+  __builtin_cpu_init();
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+}
+#endif
+
 }  // namespace scree

@@ -26,7 +26,7 @@ StepKernels<typename L::Real> kernels_for(const KernelChoice& choice) {
 }
 
 StepKernels<float> native_kernels(const KernelChoice& choice);
-StepKernels<float> avx512_kernels(const KernelChoice& choice);  // only on machines that have it
+StepKernels<float> wide_kernels(const KernelChoice& choice);  // only on machines that have the wide set
 StepKernels<float> scalar_kernels(const KernelChoice& choice);
 StepKernels<double> reference_kernels(const KernelChoice& choice);
 
