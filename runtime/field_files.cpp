@@ -9,6 +9,12 @@
 
 namespace scree {
 
+namespace {
+
+constexpr size_t kManyParticles = 4'000'000;
+
+}  // namespace
+
 bool writes_fields(const FieldSettings& s) {
   return s.moments.interval > 0 || !s.moments.times.empty() || s.moments.stage_ends;
 }
@@ -54,6 +60,8 @@ void FieldFiles::look(const RunView& run) {
     for (const PackedArray& array : frame) file.array(array);
   });
   newest_.inserted = engine.counters().inserted, newest_.contacts_known = engine.knows_contacts();
+  // A picture of this moment may come next: of ten million particles one of the two is enough to hold.
+  if (engine.count() >= kManyParticles) background_.finish();
 }
 
 void FieldFiles::finish(const RunView&) {

@@ -5,8 +5,8 @@
 //   solid.vtkhdf.series       fibres and walls as a surface (runtime/solid_mesh.h), a frame whenever walls were opened
 //
 // look() packs the particles on all threads and goes on; a thread beside the run writes them, and the solid. One frame
-// is in memory at a time: if the one before is not written yet, look() waits. Its making takes kFieldBytesPerParticle,
-// what waits to be written kPackedBytesPerParticle.
+// is in memory at a time: if the one before is not written yet, look() waits, and of millions it waits for its own. Its
+// making takes kFieldBytesPerParticle, what waits to be written kPackedBytesPerParticle.
 #pragma once
 
 #include "runtime/frame_files.h"
@@ -14,7 +14,7 @@
 
 namespace scree {
 
-inline constexpr double kFieldBytesPerParticle = 180, kPackedBytesPerParticle = 60;
+inline constexpr double kFieldBytesPerParticle = 100, kPackedBytesPerParticle = 60;
 
 bool writes_fields(const FieldSettings& settings);
 

@@ -1,11 +1,6 @@
 #include "runtime/frame_files.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,18 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kFramesPerSeries = 100;  // the list is written anew after every frame at first, then ever more rarely
-
-[[noreturn]] void fail(const fs::path& path, const std::string& why) {
-  throw RunError(fmt::format("cannot write {}: {}", path.string(), why));
-}
-
-void force_to_disk(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool forced = descriptor >= 0 && fsync(descriptor) == 0;
-  const int why = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!forced) fail(path, std::strerror(why));
-}
 
 }  // namespace
 
@@ -75,7 +58,7 @@ void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
     file.array("FieldData/step", std::span<const int64_t>(&step, 1));
     fill(file);
   });
-  force_to_disk(path);  // here, where nobody waits for the disk
+  sync_file(path);  // here, where nobody waits for the disk
   std::error_code error;
   if (const uintmax_t size = fs::file_size(path, error); !error) bytes_ += size;
   if (!written_.empty() && written_.back().step == frame.step) written_.pop_back();
@@ -89,7 +72,8 @@ void FrameFiles::write_series() const {
   series["files"] = nlohmann::json::array();
   for (const Frame& frame : written_)
     series["files"].push_back({{"name", path_of(frame).filename().string()}, {"time", frame.time}});
-  write_file(folder_ / (stem_ + ".vtkhdf.series"), series.dump(1) + "\n");
+  for (const char* ending : {".vtkhdf.series", ".hdf.series"})
+    write_file(folder_ / (stem_ + ending), series.dump(1) + "\n");
 }
 
 void FrameFiles::settle() {

@@ -2,6 +2,7 @@
 //
 //   FOLDER/STEM_000000012345.vtkhdf   one a frame, by the step; complete under that name
 //   FOLDER/STEM.vtkhdf.series         the frames with their times (s): what to open in ParaView
+//   FOLDER/STEM.hdf.series            the same: ParaView 5.11 knows its VTKHDF files by this ending only
 #pragma once
 
 #include <filesystem>

@@ -5,7 +5,9 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "geometry/closest_point.h"
 #include "runtime/case_error.h"
@@ -253,6 +255,27 @@ TEST(FieldFiles, KeepTheFrameOfAStepThatKnowsItsContacts) {
   std::vector<int16_t> coordination;
   StateReader(file).load("VTKHDF/PointData/coordination", coordination);
   EXPECT_EQ(std::ranges::count(coordination, -1), 0);
+}
+
+TEST(FieldFiles, AreListedWithTheirTimesUnderBothEndings) {
+  Stand s(heap_case());
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  s.engine->insert(heap(s.c));
+  std::vector<std::pair<std::string, double>> expected;
+  for (int frame = 0; frame < 3; ++frame) {
+    for (int k = 0; k < 5; ++k) s.engine->step();
+    fields.look(s.view());
+    expected.emplace_back(frame_path(s, "particles").filename().string(), s.engine->time());
+  }
+  fields.finish(s.view());
+  for (const char* ending : {".vtkhdf.series", ".hdf.series"}) {
+    std::ifstream file(s.folder_path / "fields" / (std::string("particles") + ending));
+    const nlohmann::json series = nlohmann::json::parse(file);
+    std::vector<std::pair<std::string, double>> listed;
+    for (const auto& f : series["files"]) listed.emplace_back(f["name"], f["time"]);
+    EXPECT_EQ(listed, expected) << ending;
+    EXPECT_TRUE(fs::exists(s.folder_path / "fields" / (std::string("solid") + ending)));
+  }
 }
 
 TEST(FieldFiles, OnlyNamedFieldsAreWritten) {
