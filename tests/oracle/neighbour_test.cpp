@@ -243,6 +243,23 @@ TEST(NeighboursDeathTest, StepsBeforeTheFirstParticleComesPass) {
 }
 
 // A gas at speeds that need many rebuilds, chosen skin and thin skin.
+// A bed that falls, and comes to rest: the skin goes with the speeds, at each renewal of the lists.
+TEST(Neighbours, AreListedWithASkinThatGoesWithTheSpeeds) {
+  const LooseBed bed{6, 6, 8, kRadius, kRadius, 3.2};
+  const auto engine = make_engine(bed_case(bed));
+  engine->insert(bed.particles({0, 0, 0}, 3));
+  engine->step();
+  const double begun = engine->skin();
+  run_steps(*engine, 2500);
+  const double falling = engine->skin();
+  run_steps(*engine, 20000);
+  engine->insert({}), engine->step();  // renewed
+  const double resting = engine->skin();
+  EXPECT_GT(falling, 1.5 * begun);
+  EXPECT_LT(resting, falling / 1.5);
+  EXPECT_GT(resting, 0);
+}
+
 TEST(Neighbours, OfAFastGasAreNeverMissed) {
   for (const double skin : {0.0, 1e-5})
     for (const std::set<char>& periodic : {std::set<char>{'x', 'y', 'z'}, std::set<char>{'x', 'y'}}) {
