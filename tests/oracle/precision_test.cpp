@@ -105,7 +105,7 @@ void expect_within_claim(const ForceError& e, const std::string& step) {
 double difference(double value, double reference) { return std::abs(value / reference - 1); }
 
 // `energy`: the bound on the relative difference of kinetic energies, twice what was seen. Of a bed at rest that is a
-// difference of next to nothing: its grains creep at 0.1 mm/s.
+// difference of next to nothing: its grains creep at 0.1 mm/s. For one size it is within the 1e-6 that are asked for.
 void expect_precisions_agree(const LooseBed& bed, int settling_steps, double energy) {
   const Case c = bed_case(bed);
   TwoPrecisions both(c, settled(bed, settling_steps));
@@ -126,11 +126,11 @@ void expect_precisions_agree(const LooseBed& bed, int settling_steps, double ene
 }
 
 TEST(Precision, OfForcesOnADenseBedIsAsClaimed) {
-  expect_precisions_agree({11, 11, 14, kRadius, kRadius, 2.6}, 25000, 1.5e-5);
+  expect_precisions_agree({11, 11, 14, kRadius, kRadius, 2.6}, 25000, 1e-6);
 }
 
 TEST(Precision, OfForcesOnADenseBedOfSizesOneToThreeIsAsClaimed) {
-  expect_precisions_agree({8, 8, 12, kRadius, 3 * kRadius, 2.6}, 40000, 6e-5);
+  expect_precisions_agree({8, 8, 12, kRadius, 3 * kRadius, 2.6}, 40000, 5e-6);
 }
 
 // A velocity is a float and g dt is a small part of it: the sum is rounded, and as g dt is the same in each step, it is
