@@ -84,7 +84,9 @@ class RayTracer {
 // radius is not positive, std::runtime_error if Embree fails.
 std::unique_ptr<RayTracer> make_embree_tracer(TracedBodies bodies);
 std::unique_ptr<RayTracer> make_brute_force_tracer(TracedBodies bodies);
-// With so many balls to a leaf of the hierarchy: less memory, slower. The one above takes one, of four millions on two.
+// With so many balls to a leaf of the hierarchy: less memory, slower. The one above takes as many as this says: two of
+// four million balls on, where neighbours in the list are neighbours in space (as after a fill they are not), else one.
 std::unique_ptr<RayTracer> make_embree_tracer(TracedBodies bodies, size_t balls_together);
+size_t balls_together(std::span<const Ball> balls);
 
 }  // namespace scree

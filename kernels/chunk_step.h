@@ -82,7 +82,7 @@ inline void integrate(const ChunkTask<Real>& task, ChunkOutcome& outcome) {
     const Real linear = kick * p.inverse_mass;
     const Real angular = linear * (Real(2.5) / (p.radius * p.radius));  // I = 2/5 m R^2
     if constexpr (ledger) add_motion(p, row, s, outcome.ledger);
-    // What gravity and the contacts give first: at rest they cancel, and the velocity is rounded once, by next to nothing.
+    // What gravity and contacts give first: at rest they cancel, and the velocity is rounded once, by next to nothing.
     p.vx += fma(linear, row[0], gravity_kick.x);
     p.vy += fma(linear, row[1], gravity_kick.y);
     p.vz += fma(linear, row[2], gravity_kick.z);

@@ -4,6 +4,8 @@
 //                             runtime/particle_fields.h
 //   solid.vtkhdf.series       fibres and walls as a surface (runtime/solid_mesh.h), a frame whenever walls were opened
 //
+// Both lists are there as *.hdf.series, too (runtime/frame_files.h).
+//
 // look() packs the particles on all threads and goes on; a thread beside the run writes them, and the solid. One frame
 // is in memory at a time: if the one before is not written yet, look() waits, and of millions it waits for its own. Its
 // making takes kFieldBytesPerParticle, what waits to be written kPackedBytesPerParticle.

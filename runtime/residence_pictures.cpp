@@ -29,7 +29,7 @@ void draw_times(const std::filesystem::path& path, const std::vector<ResidenceBi
   PanelPicture picture;
   picture.title = fmt::format("residence times, mass in bins of {:.4g} s", bins[0].to - bins[0].from);
   picture.note = fmt::format(
-      "of {:.3g} mg that entered {:.3g} % had come through at the end; colour: share of it that took no longer, %",
+      "of {:.3g} mg that entered {:.3g} % had come through at the end; colour: share of those that took no longer, %",
       entered / kMilligram, 100 * all / entered);
   picture.scale = {"share", "%", 0, 100, ColourMap::sequential, {}};
   std::vector<double> shares;

@@ -188,11 +188,11 @@ class Simulation {
       heed_stop();
       if ((engine_->counters().steps - state_.stage_step) % kStepsPerLook == 0) {
         if (seconds_since(last_checkpoint_) >= case_.checkpoint.interval) write_checkpoint();
+        for (const std::string& warning : watch_.look(*engine_)) log_->warn(warning);  // before a pour's next particles
         if (done()) return;
         progress_.update(engine_->time(), engine_->count(), static_cast<double>(engine_->counters().particle_steps),
                          share());
         log_now_and_then();
-        for (const std::string& warning : watch_.look(*engine_)) log_->warn(warning);
       }
       engine_->step();
       if (engine_->counters().steps % steps_per_sample_ == 0) sample();

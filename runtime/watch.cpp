@@ -40,13 +40,15 @@ ParticleState fastest_of(const Engine& e) {
 }  // namespace
 
 EnergyBudget::EnergyBudget(const Case& c)
-    : gravity_(norm(c.gravity)), wall_speed_(largest_wall_speed(c)), poured_speed_(0), heaviest_(0), reads_(false) {
+    : gravity_(norm(c.gravity)), wall_speed_(largest_wall_speed(c)), inserted_speed_(0), heaviest_(0), reads_(false) {
   double friction = 0, density = 0;
   for (const MaterialPair& pair : c.pairs) friction = std::max(friction, pair.sliding_friction);
   for (const ParticleKind& kind : c.kinds) density = std::max(density, c.materials[kind.material].density);
   for (const Stage& stage : c.stages) {
     if (const auto* pour = std::get_if<PourStage>(&stage.action))
-      poured_speed_ = std::max(poured_speed_, norm(pour->velocity));
+      inserted_speed_ = std::max(inserted_speed_, norm(pour->velocity));
+    if (const auto* fill = std::get_if<FillStage>(&stage.action))
+      inserted_speed_ = std::max(inserted_speed_, norm(fill->velocity));
     reads_ |= std::holds_alternative<ReadStage>(stage.action);
   }
   heaviest_ = density * 4.0 / 3 * std::numbers::pi * std::pow(largest_radius(c), 3);
@@ -65,8 +67,9 @@ double EnergyBudget::most_after(const EnergyLook& before, const EnergyLook& now)
   // A collision with a wall at speed w turns v into v + 2 w at most.
   const double speed = std::max(before.max_speed, now.max_speed) + gravity_ * dt;
   const double from_walls = 2 * mass * wall_speed_ * (speed + wall_speed_);
-  const double at_rest = 0.5 * mass * kRestSpeed * kRestSpeed, poured = 0.5 * came * poured_speed_ * poured_speed_;
-  const double without_gravity = before.kinetic + springs_ * *before.elastic + from_walls + poured + at_rest;
+  const double at_rest = 0.5 * mass * kRestSpeed * kRestSpeed;
+  const double inserted = 0.5 * came * inserted_speed_ * inserted_speed_;
+  const double without_gravity = before.kinetic + springs_ * *before.elastic + from_walls + inserted + at_rest;
   return kMargin * std::pow(std::sqrt(without_gravity) + gravity_ * dt * std::sqrt(0.5 * mass), 2);
 }
 

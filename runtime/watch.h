@@ -31,7 +31,7 @@ class EnergyBudget {
   double most_after(const EnergyLook& before, const EnergyLook& now) const;  // J
 
  private:
-  double gravity_, wall_speed_, poured_speed_, springs_, heaviest_;
+  double gravity_, wall_speed_, inserted_speed_, springs_, heaviest_;
   bool reads_;  // particles come from files, as fast and as deep in one another as those say
 };
 

@@ -151,6 +151,17 @@ TEST_P(AgainstBruteForce, ClosestAnyAllAndContaining) {
   }
 }
 
+TEST(RayTracer, TakesBallsInTwosWhereMillionsLieInOrder) {
+  const size_t many = 4'000'000;
+  std::vector<Ball> balls;
+  for (size_t k = 0; k < many; ++k) balls.push_back({{1e-3 * static_cast<double>(k), 0, 0}, 5e-4});
+  EXPECT_EQ(balls_together(balls), 2u);
+  EXPECT_EQ(balls_together(std::span(balls).first(many - 1)), 1u);
+  for (size_t k = 0; k < many / 2; k += 2) std::swap(balls[k], balls[many - 1 - k]);  // far from their neighbours
+  for (size_t k = 0; k < many / 2; k += 4) std::swap(balls[k + 1], balls[many / 2 + k]);
+  EXPECT_EQ(balls_together(balls), 1u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Bodies, AgainstBruteForce, ::testing::Values(0, 1, 10, 400));
 
 }  // namespace

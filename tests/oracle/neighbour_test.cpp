@@ -242,7 +242,6 @@ TEST(NeighboursDeathTest, StepsBeforeTheFirstParticleComesPass) {
   EXPECT_EXIT(step_without_particles(), ::testing::ExitedWithCode(0), "");
 }
 
-// A gas at speeds that need many rebuilds, chosen skin and thin skin.
 // A bed that falls, and comes to rest: the skin goes with the speeds, at each renewal of the lists.
 TEST(Neighbours, AreListedWithASkinThatGoesWithTheSpeeds) {
   const LooseBed bed{6, 6, 8, kRadius, kRadius, 3.2};
@@ -260,6 +259,7 @@ TEST(Neighbours, AreListedWithASkinThatGoesWithTheSpeeds) {
   EXPECT_GT(resting, 0);
 }
 
+// A gas at speeds that need many rebuilds, chosen skin and thin skin.
 TEST(Neighbours, OfAFastGasAreNeverMissed) {
   for (const double skin : {0.0, 1e-5})
     for (const std::set<char>& periodic : {std::set<char>{'x', 'y', 'z'}, std::set<char>{'x', 'y'}}) {

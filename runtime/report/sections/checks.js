@@ -50,15 +50,15 @@ const smallShare = (share) => `${significant(100 * share, 2)} %`;
 
 const ledgerOf = (s) => s?.energy;
 const ledgerWants = () => [" A ledger of every term wants ", h("code", {}, "energy_ledger = true"), " under [output] and a third more time."];
-const noLedger = (w) => w?.looks > 0
-  ? check(w.largest_share_of_bound <= 1, `Energy: looked at ${grouped(w.looks)} times, the kinetic energy of all particles was at most ${smallShare(w.largest_share_of_bound)} of what stops a run: twice what gravity, contacts, moving walls and what came in can make of it between two looks.`, ledgerWants())
+const noLedger = ({ energy_watch: w, resumed_from }) => w?.looks > 0
+  ? check(w.largest_share_of_bound <= 1, `Energy: looked at ${grouped(w.looks)} times, the kinetic energy of all particles was at most ${smallShare(w.largest_share_of_bound)} of what stops a run: twice what gravity, contacts, moving walls and what came in can make of it between two looks${resumed_from ? ", since it was resumed" : ""}.`, ledgerWants())
   : h("li", {}, "Energy: watched for jumps, none stopped the run.", ledgerWants());
 
 const checksOf = (run) => {
   const s = run.summary;
   if (!s) return null;
   const ledger = ledgerOf(s), terms = ledger && Object.fromEntries(Object.entries(ledger).filter(([key]) => /_J$/.test(key)));
-  return [h("ul", { class: "checks" }, particleCheck(s), massCheck(run, s), curveCheck(run, s), ledger ? energyCheck(ledger) : s.status === "done" && noLedger(s.energy_watch)),
+  return [h("ul", { class: "checks" }, particleCheck(s), massCheck(run, s), curveCheck(run, s), ledger ? energyCheck(ledger) : s.status === "done" && noLedger(s)),
     ledger && [h("h3", {}, "Energy ledger, from the run's beginning to its end"), energyTable(terms)]];
 };
 

@@ -17,11 +17,11 @@ const residenceHistogram = (runs) => {
     series: having.map(({ run }, k) => ({ label: runs.length > 1 ? run.label : "share", values: ys[k], colour: colourOf(run.colour), steps: curves.length === 1, text: (v) => `${significant(v)} 1/s` })) });
 };
 
-// What had entered and neither come through nor been counted out: where it is much, the run ended while grains flowed.
+// What had entered and not come through: where it is much, the run may have ended while grains flowed.
 const kManyInside = 0.05;
 const insideShare = (r) => (r.entered_kg > 0 && isNumber(r.went_through_kg) ? 1 - r.went_through_kg / r.entered_kg : 0);
 
-const residenceFacts = (r) => [insideShare(r) > kManyInside && note(`${significant(100 * insideShare(r), 2)} % of what entered was still inside when the run ended: the times are of those that were through by then, the quicker ones, and what is inside is not what would stay. A drain to the end (discharged_fraction = 1) tells both.`), facts([
+const residenceFacts = (r) => [insideShare(r) > kManyInside && note(`${significant(100 * insideShare(r), 2)} % of what entered was still inside when the run ended. Where grains still flowed then, the times are of the quicker ones, and what is inside is not what would stay: a drain to the end (discharged_fraction = 1) tells both.`), facts([
   ["Went through", isNumber(r.went_through_kg) && `${withUnit("mass", r.went_through_kg)} of ${withUnit("mass", r.entered_kg)} that entered`],
   ["Mean", isNumber(r.mean_s) && withUnit("time", r.mean_s)],
   ["10 %, half, 90 %", isNumber(r.median_s) && `within ${[r.p10_s, r.median_s, r.p90_s].map((t) => withUnit("time", t)).join(", ")}`],
