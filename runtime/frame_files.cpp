@@ -1,6 +1,7 @@
 #include "runtime/frame_files.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,7 +18,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr size_t kFramesPerSeries = 100;  // the list is written anew after every frame at first, then ever more rarely
+// The lists are written anew after a frame when this much time went by, and a hundred times what it took the last time.
+constexpr std::chrono::duration<double> kSeriesInterval{1.0};  // s
+constexpr double kSeriesTimes = 100;
 
 }  // namespace
 
@@ -63,10 +66,11 @@ void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
   if (const uintmax_t size = fs::file_size(path, error); !error) bytes_ += size;
   if (!written_.empty() && written_.back().step == frame.step) written_.pop_back();
   written_.push_back(frame);
-  if (written_.size() % (1 + written_.size() / kFramesPerSeries) == 0) write_series();
+  if (std::chrono::steady_clock::now() >= series_due_) write_series();
 }
 
-void FrameFiles::write_series() const {
+void FrameFiles::write_series() {
+  const auto begun = std::chrono::steady_clock::now();
   nlohmann::json series;
   series["file-series-version"] = "1.0";
   series["files"] = nlohmann::json::array();
@@ -74,6 +78,9 @@ void FrameFiles::write_series() const {
     series["files"].push_back({{"name", path_of(frame).filename().string()}, {"time", frame.time}});
   for (const char* ending : {".vtkhdf.series", ".hdf.series"})
     write_file(folder_ / (stem_ + ending), series.dump(1) + "\n");
+  const auto now = std::chrono::steady_clock::now();
+  series_due_ = now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                          std::max(kSeriesInterval, kSeriesTimes * std::chrono::duration<double>(now - begun)));
 }
 
 void FrameFiles::settle() {

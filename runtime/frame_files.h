@@ -1,10 +1,11 @@
 // A time series of VTKHDF files in the results folder, written beside the run:
 //
 //   FOLDER/STEM_000000012345.vtkhdf   one a frame, by the step; complete under that name
-//   FOLDER/STEM.vtkhdf.series         the frames with their times (s): what to open in ParaView
+//   FOLDER/STEM.vtkhdf.series         the frames with their times (s), a second old at most: what to open in ParaView
 //   FOLDER/STEM.hdf.series            the same: ParaView 5.11 knows its VTKHDF files by this ending only
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -46,7 +47,7 @@ class FrameFiles {
  private:
   std::filesystem::path path_of(const Frame& frame) const;
   void write_now(const Frame& frame, const Fill& fill);
-  void write_series() const;
+  void write_series();
 
   std::filesystem::path folder_;
   std::string stem_;
@@ -58,6 +59,7 @@ class FrameFiles {
 
   // The background thread's:
   std::vector<Frame> written_;
+  std::chrono::steady_clock::time_point series_due_;  // at once
   uint64_t bytes_ = 0;
   double seconds_ = 0;
 };
