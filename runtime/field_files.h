@@ -16,7 +16,7 @@
 
 namespace scree {
 
-inline constexpr double kFieldBytesPerParticle = 100, kPackedBytesPerParticle = 60;
+inline constexpr double kFieldBytesPerParticle = 100, kPackedBytesPerParticle = 75;
 
 bool writes_fields(const FieldSettings& settings);
 

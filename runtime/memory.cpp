@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Bytes a particle of the settled 400 um bed, lists and sort buffers included, at the peak of a rebuild: 349 were
+// Bytes a particle of the settled 400 um bed, lists and sort buffers included, at the peak of a rebuild: 356 were
 // measured (bench/README.md, "Memory"), and a fifth for flows with longer lists. The reference precision keeps
 // everything in double.
 constexpr double kBytesPerParticle = 420, kBytesPerReferenceParticle = 700;
