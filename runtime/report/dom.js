@@ -28,6 +28,7 @@ const addSection = (section) => sections.push(section);
 
 const note = (...children) => h("p", { class: "note" }, ...children);
 
+const isEmpty = (content) => [content].flat(Infinity).every((part) => part === null || part === undefined || part === false);
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 
@@ -43,6 +44,20 @@ const nameRuns = ({ runs, sweep }) => {
     runs[member.run].colour = combinations.indexOf(key);
   }
 };
+// What a section has to say of each run, one after the other: content(run) returns nodes, or null. Many runs are folded
+// away, so that the page stays one that can be read; each opens by itself. Null if no run has anything.
+const kMostUnfolded = 2;
+const perRun = (runs, content) => {
+  const parts = runs.map((run) => {
+    const part = content(run), name = [swatch(run.colour), " ", run.label];
+    if (isEmpty(part)) return null;
+    if (runs.length === 1) return part;
+    if (runs.length <= kMostUnfolded) return [h("h3", {}, name), part];
+    return h("details", { class: "of-run" }, h("summary", {}, name), part);
+  }).filter(Boolean);
+  return parts.length > 0 ? parts : null;
+};
+
 const kSeriesColours = 8;
 const colourOf = (index) => `var(--series-${index % kSeriesColours})`;
 const swatch = (index) => h("span", { class: "swatch", style: `background:${colourOf(index)}`, "aria-hidden": "true" });

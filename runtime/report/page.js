@@ -20,7 +20,6 @@ const contentOf = (section) => {
   }
 };
 
-const isEmpty = (content) => [content].flat(Infinity).every((part) => part === null || part === undefined || part === false);
 const shown = sections.map((section) => ({ ...section, content: contentOf(section) })).filter(({ content }) => !isEmpty(content));
 
 document.title = `${data.title || "Scree"} – Scree`;

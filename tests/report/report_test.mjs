@@ -241,6 +241,26 @@ test("several runs lie over one another from the moment the drain began, and wha
   await close();
 });
 
+test("what many runs have to say one by one is folded away, opens with a click and fits a phone", async () => {
+  const folders = ["first", "second", "third"].map((name) => writeRun(join(place.folder, name)));
+  folders.forEach(addPicturesAndFields);
+  const page_file = join(place.folder, "three.html");
+  scree("report", ...folders, "--out", page_file);
+  const { page, troubles, close } = await open(browser, page_file, { viewport: kPhone });
+  assert.deepEqual(await page.locator("#pictures .gallery.small figcaption").allTextContents(), folders.map((_, k) => ` ${["first", "second", "third"][k]}: front speed, t = 0.35 s`));
+  for (const id of ["pictures", "averages", "touch", "residence"]) {
+    const folds = page.locator(`#${id} details`);
+    assert.deepEqual(await folds.locator("summary").allTextContents(), [" first", " second", " third"], id);
+    assert.ok(!(await folds.first().locator("img").first().isVisible()), id);
+    for (let k = 0; k < 3; ++k) await folds.nth(k).locator("summary").click();
+    assert.ok(await folds.last().locator("img").first().isVisible(), id);
+  }
+  assert.deepEqual(await readOut(page, "averages", 2, 0.5), ["1.00 mm", "3.00 mm, 2.00 × mean"]);
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= kPhone.width);
+  assert.deepEqual(troubles, []);
+  await close();
+});
+
 test("a sweep has a row for each combination, a chart for each parameter, and links to its runs", async () => {
   const { page, troubles, close } = await open(browser, reportOf(swept));
   assert.equal(await page.locator("#sweep tbody tr").count(), 2);

@@ -57,11 +57,8 @@ const otherNumbers = (a) => {
 addSection({
   id: "averages",
   title: "Averaged fields",
-  make: ({ runs }) => {
-    const pictures = gallery(runs, "averages");
-    const tables = runs.map((run) => averagesOf(run).map(([key, value]) => [
-      h("h3", {}, runs.length > 1 && [swatch(run.colour), ` ${run.label}: `], capital(key.replace(/^average_/, ""))),
-      averageTable(value), otherNumbers(value), lanesOf(value), averageNote(value)]));
-    return pictures || tables.flat().length > 0 ? [tables, pictures] : null;
-  },
+  make: ({ runs }) => perRun(runs, (run) => [
+    averagesOf(run).map(([key, value]) => [
+      h("h3", {}, capital(key.replace(/^average_/, ""))), averageTable(value), otherNumbers(value), lanesOf(value), averageNote(value)]),
+    gallery(run, "averages")]),
 });

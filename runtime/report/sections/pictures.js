@@ -13,25 +13,35 @@ const zoomPicture = (picture) => {
   box.showModal();
 };
 
-const figure = (picture) =>
+const figure = (picture, caption = captionOf(picture)) =>
   h("figure", {},
     h("button", { type: "button", class: "picture", "aria-label": `Enlarge ${captionOf(picture)}`, click: () => zoomPicture(picture) },
       h("img", { src: picture.uri, alt: captionOf(picture), width: picture.width, height: picture.height })),
-    h("figcaption", {}, captionOf(picture)));
+    h("figcaption", {}, caption));
 
-// The pictures of one folder of each run; null if there are none.
-const gallery = (runs, folder) => {
-  const parts = runs.map((run) => {
-    const pictures = run.pictures.filter((p) => p.folder === folder);
-    if (pictures.length === 0) return null;
-    const out = pictures.find((p) => p.left_out)?.left_out;
-    return [
-      runs.length > 1 && h("h3", {}, swatch(run.colour), " ", run.label),
-      h("div", { class: "gallery" }, pictures.filter((p) => p.uri).map(figure)),
-      out && note(`${grouped(out)} more in `, h("a", { href: `${run.link}/${folder}/` }, `${folder}/`), "."),
-    ];
-  }).filter(Boolean);
-  return parts.length > 0 ? parts : null;
+// The pictures of one folder of a run; null if there are none.
+const gallery = (run, folder) => {
+  const pictures = run.pictures.filter((p) => p.folder === folder);
+  if (pictures.length === 0) return null;
+  const out = pictures.find((p) => p.left_out)?.left_out;
+  return [
+    h("div", { class: "gallery" }, pictures.filter((p) => p.uri).map((p) => figure(p))),
+    out && note(`${grouped(out)} more in `, h("a", { href: `${run.link}/${folder}/` }, `${folder}/`), "."),
+  ];
 };
 
-addSection({ id: "pictures", title: "Pictures", make: ({ runs }) => gallery(runs, "pictures") });
+// Many runs side by side: of each the last picture there is.
+const lastPictures = (runs) => {
+  if (runs.length <= kMostUnfolded) return null;
+  const having = runs.map((run) => ({ run, picture: run.pictures.findLast((p) => p.folder === "pictures" && p.uri) })).filter(({ picture }) => picture);
+  return having.length > 0 && h("div", { class: "gallery small" }, having.map(({ run, picture }) => figure(picture, [swatch(run.colour), ` ${run.label}: ${lowerFirst(captionOf(picture))}`])));
+};
+
+addSection({
+  id: "pictures",
+  title: "Pictures",
+  make: ({ runs }) => {
+    const all = perRun(runs, (run) => gallery(run, "pictures"));
+    return all && [lastPictures(runs), all];
+  },
+});

@@ -41,18 +41,15 @@ const retainedTable = (run) => {
   ];
 };
 
-const perRun = (runs, content) => runs.map((run) => {
-  const part = content(run);
-  return part && [runs.length > 1 && h("h4", {}, swatch(run.colour), " ", run.label), part];
-}).filter(Boolean);
-
 addSection({
   id: "residence",
   title: "Residence and retention",
   make: ({ runs }) => {
-    const numbers = perRun(runs, (run) => run.summary?.residence && residenceFacts(run.summary.residence));
-    const histogram = residenceHistogram(runs), retained = perRun(runs, retainedTable), pictures = gallery(runs, "residence");
-    if (numbers.length === 0 && !histogram && retained.length === 0 && !pictures) return null;
-    return [numbers, histogram, retained.length > 0 && [h("h3", {}, "At the junctions at the end"), retained], pictures];
+    const histogram = residenceHistogram(runs);
+    const ofRuns = perRun(runs, (run) => {
+      const numbers = run.summary?.residence && residenceFacts(run.summary.residence), retained = retainedTable(run);
+      return [numbers, runs.length === 1 && histogram, retained && [h("h3", {}, "At the junctions at the end"), retained], gallery(run, "residence")];
+    });
+    return [runs.length > 1 && histogram, ofRuns];
   },
 });

@@ -19,7 +19,8 @@ const measureChart = ({ sweep }, combinations, parameter, measure) => {
     const members = combinations.filter(({ values }) => otherValues(values, parameter) === group);
     const means = order.map((v) => meanOf(members.find(({ values }) => values[parameter] === v)?.results ?? [], measure));
     const others = labelsOf(sweep, members[0].values).map((text, k) => `${sweep.parameters[k].label} ${text}`).filter((_, k) => k !== parameter);
-    return { label: others.join(", ") || lowerFirst(measure.title), colour: colourOf(index), width: 1.25, markers: true,
+    return { label: others.join(", ") || lowerFirst(measure.title), colour: colourOf(index), markers: true,
+      width: numeric || groups.length > 1 ? 1.25 : 0,  // nothing lies between two names
       values: means.map((m) => m && m.mean / unit[0]), errors: means.map((m) => m && m.error / unit[0]),
       text: (v, k) => `${withError(v, means[k].error / unit[0])} ${unit[1]}` };
   });

@@ -27,17 +27,14 @@ const touchTable = (touch) => {
     parts.map(([name, p]) => [capital(name), ...columns.map(([, text]) => text(p) || "–")]));
 };
 
+const touchWords = ({ touch }) => touch && [
+  touchTable(touch),
+  touchedParts(touch).some(([, p]) => p.out_of_reach_share > 0) && note("Out of reach: where no grain fits, in corners of fibres and walls; it counts as never touched."),
+  Array.isArray(touch.window_s) && note(`Counted from ${significant(touch.window_s[0])} s to ${significant(touch.window_s[1])} s.`),
+];
+
 addSection({
   id: "touch",
   title: "Touch maps",
-  make: ({ runs }) => {
-    const tables = runs.filter((run) => run.summary?.touch).map((run) => {
-      const window = run.summary.touch.window_s;
-      return [runs.length > 1 && h("h3", {}, swatch(run.colour), " ", run.label), touchTable(run.summary.touch),
-        touchedParts(run.summary.touch).some(([, p]) => p.out_of_reach_share > 0) && note("Out of reach: where no grain fits, in corners of fibres and walls; it counts as never touched."),
-        Array.isArray(window) && note(`Counted from ${significant(window[0])} s to ${significant(window[1])} s.`)];
-    });
-    const pictures = gallery(runs, "touch");
-    return tables.length > 0 || pictures ? [tables, pictures] : null;
-  },
+  make: ({ runs }) => perRun(runs, (run) => [touchWords(run.summary ?? {}), gallery(run, "touch")]),
 });
