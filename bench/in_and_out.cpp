@@ -1,16 +1,13 @@
-// Grains into a run and out of it: filling a region, reading a CSV file, writing a VTP file, a checkpoint, a frame of
-// field files.
-#include <unistd.h>
-
+// Grains into a run and out of it: filling a region, reading a CSV file, writing a VTP file, a checkpoint.
 #include <filesystem>
 
 #include "bench/measure.h"
 #include "bench/scenes.h"
+#include "bench/temporary.h"
 #include "kernels/parallel.h"
 #include "runtime/case_physics.h"
 #include "runtime/checkpoint.h"
 #include "runtime/csv_particles.h"
-#include "runtime/particle_fields.h"
 #include "runtime/placement.h"
 #include "runtime/random.h"
 #include "runtime/results.h"
@@ -49,31 +46,12 @@ State random_grains() {
   return grains;
 }
 
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& ending)
-      : path_(std::filesystem::temp_directory_path() / ("scree_bench_" + std::to_string(getpid()) + ending)) {}
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-void report_file(benchmark::State& state, const std::filesystem::path& path, size_t rows = kRows) {
-  set_rate(state, "rows/s", static_cast<double>(rows * state.iterations()));
-  set_rate(state, "file_bytes/s", static_cast<double>(file_size(path) * state.iterations()));
-}
-
 void csv_read(benchmark::State& state) {
   const TemporaryFile file(".csv");
   write_state_csv(file.path(), random_grains());
   std::vector<CsvParticle> read;
   for (auto _ : state) read = read_particles_csv(file.path().string());
-  report_file(state, file.path());
+  set_file_rates(state, file.path(), kRows);
   Hash hash;
   for (const CsvParticle& p : read) hash.add(p.position), hash.add(p.velocity);
   state.SetLabel(hash.text());
@@ -83,21 +61,8 @@ void vtp_write(benchmark::State& state) {
   const TemporaryFile file(".vtp");
   const State grains = random_grains();
   for (auto _ : state) write_particles_vtp(file.path(), grains);
-  report_file(state, file.path());
+  set_file_rates(state, file.path(), kRows);
 }
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() { std::filesystem::create_directories(file_.path()); }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(file_.path(), ignored);
-  }
-  const std::filesystem::path& path() const { return file_.path(); }
-
- private:
-  TemporaryFile file_{""};
-};
 
 // The engine's state of a settled bed, lists and histories included; forced to the disk, sealed, put in place.
 void checkpoint_write(benchmark::State& state) {
@@ -110,7 +75,7 @@ void checkpoint_write(benchmark::State& state) {
   for (auto _ : state)
     name = checkpoints.write(engine->counters().steps, [&](StateWriter& out) { engine->save(out); }).name;
   const std::filesystem::path path = folder.path() / "checkpoints" / name;
-  report_file(state, path, engine->count());
+  set_file_rates(state, path, engine->count());
   const auto again = make_engine(c);
   const double seconds = seconds_of([&] { Checkpoints::read(path, [&](StateReader& in) { again->load(in); }); });
   state.counters["read_seconds"] = seconds;
@@ -118,28 +83,6 @@ void checkpoint_write(benchmark::State& state) {
   Hash hash;
   hash.add(engine->state_hash());
   state.SetLabel(hash.text());
-}
-
-// A frame of all fields of the small lattice in flow: its part in the run, and what the thread beside it does.
-void field_copy(benchmark::State& state) {
-  set_thread_count(static_cast<int>(state.range(0)));
-  const Case c = drain_case();
-  const auto engine = started_engine(c, drain_in_flow(), kWarmUpSteps);
-  for (auto _ : state) packed_particles(c, *engine, particle_field_names());
-  set_rate(state, "rows/s", static_cast<double>(engine->count() * state.iterations()));
-}
-
-void field_write(benchmark::State& state) {
-  const Case c = drain_case();
-  const auto engine = started_engine(c, drain_in_flow(), kWarmUpSteps);
-  const auto frame = packed_particles(c, *engine, particle_field_names());
-  const TemporaryFile to(".vtkhdf");
-  for (auto _ : state) {
-    VtkHdfFile file(to.path(), VtkHdfType::unstructured_grid);
-    for (const PackedArray& array : frame) file.array(array);
-    file.close();
-  }
-  report_file(state, to.path(), engine->count());
 }
 
 void register_all() {
@@ -161,17 +104,6 @@ void register_all() {
         ->UseRealTime()
         ->Iterations(3)
         ->Unit(benchmark::kMillisecond);
-  for (const int64_t threads : thread_counts())
-    benchmark::RegisterBenchmark("field_copy", field_copy)
-        ->ArgNames({"threads"})
-        ->Args({threads})
-        ->UseRealTime()
-        ->Iterations(50)
-        ->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("field_write", field_write)
-      ->UseRealTime()
-      ->Iterations(20)
-      ->Unit(benchmark::kMillisecond);
 }
 
 [[maybe_unused]] const bool kRegistered = (register_all(), true);

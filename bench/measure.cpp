@@ -106,6 +106,11 @@ void set_rate(benchmark::State& state, const std::string& what, double amount) {
   state.counters[what] = benchmark::Counter(amount, benchmark::Counter::kIsRate);
 }
 
+void set_file_rates(benchmark::State& state, const std::filesystem::path& path, size_t rows) {
+  set_rate(state, "rows/s", static_cast<double>(rows * state.iterations()));
+  set_rate(state, "file_bytes/s", static_cast<double>(file_size(path) * state.iterations()));
+}
+
 std::string Hash::text() const { return fmt::format("{:016x}", value_); }
 
 }  // namespace scree::bench

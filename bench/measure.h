@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ std::vector<int64_t> thread_counts();
 void time_steps(benchmark::State& state, Engine& engine, int rebuild_every);
 
 void set_rate(benchmark::State& state, const std::string& what, double amount);  // amount per timed second
+// Of a file of so many rows, written or read once an iteration.
+void set_file_rates(benchmark::State& state, const std::filesystem::path& path, size_t rows);
 
 class Hash {
  public:

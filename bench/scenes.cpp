@@ -19,10 +19,11 @@
 namespace scree::bench {
 namespace {
 
-constexpr double kDensity = 3071;      // kg/m3, the paper's particles
-constexpr int kStepsToSettle = 40000;  // 0.2 s: a tile falls a few diameters
-constexpr double kExit = -30e-3;       // m, exit plane of the small lattice
-constexpr double kLid = 100e-3;        // m, height of the paper's lid
+constexpr double kDensity = 3071;          // kg/m3, the paper's particles
+constexpr int kStepsToSettle = 40000;      // 0.2 s: a tile falls a few diameters
+constexpr int kStepsToSettleDemo = 20000;  // as long as its stage says
+constexpr double kExit = -30e-3;           // m, exit plane of the small lattice
+constexpr double kLid = 100e-3;            // m, height of the paper's lid
 
 std::filesystem::path states_folder;
 EngineOptions engine_options;
@@ -173,6 +174,20 @@ State drain_in_flow() {
     State flowing = started_engine(drain_case(), at_rest, 40000)->particles();
     std::erase_if(flowing, [](const ParticleState& p) { return p.position.z < kExit; });
     return flowing;
+  });
+}
+
+Case demo_case() {
+  Case c = olhx_case("demo.toml");
+  open(c, "seal");
+  return c;
+}
+
+State demo_charged() {
+  return prepared("demo_charged", [] {
+    const Case c = olhx_case("demo.toml");
+    const auto& charge = std::get<FillStage>(c.stages.front().action);
+    return started_engine(c, fill(c, charge, c.solid, {}, c.seed), kStepsToSettleDemo)->particles();
   });
 }
 

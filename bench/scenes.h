@@ -49,6 +49,10 @@ State settled_bed(const Bed& bed, int tiles);
 Case drain_case();
 State drain_in_flow();
 
+// cases/olhx/demo.toml with its seal open, and its grains settled above the exit before that.
+Case demo_case();
+State demo_charged();
+
 // The paper's full lattice and hopper (cases/olhx/paper_088.toml, lid included) packed with tiles of the settled bed,
 // stacked from the height `bottom` to `top`; grains that a fibre or wall would cut are left out.
 enum class Fibres { with, without };

@@ -2,6 +2,7 @@
 // it decide where its pages lie.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -19,7 +20,7 @@ class Array {
   // `stagger`: bytes by which the data starts after a page border. Arrays walked together must not start at equal
   // offsets: their lines would fall on the same cache sets (measured: a factor of 2.9).
   void allocate(size_t capacity, size_t stagger = 0) {
-    const size_t bytes = (capacity * sizeof(T) + stagger + 4095) / 4096 * 4096;
+    const size_t bytes = std::max<size_t>(1, (capacity * sizeof(T) + stagger + 4095) / 4096) * 4096;
     memory_.reset(static_cast<char*>(std::aligned_alloc(4096, bytes)));
     if (!memory_) throw std::bad_alloc();
     data_ = reinterpret_cast<T*>(memory_.get() + stagger);

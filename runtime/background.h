@@ -1,6 +1,7 @@
 // Work that goes on beside a run, on one thread: files that are compressed and written while the next steps are taken.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -18,8 +19,10 @@ class Background {
   ~Background();  // finishes; an error is lost
   Background(const Background&) = delete;
 
-  // Returns once no more than `most_waiting` jobs wait, so that what they hold stays bounded.
-  void submit(std::function<void()> job);
+  // Returns once no more than `most_waiting` jobs wait, so that what they hold stays bounded. The job begins at once,
+  // or after `patience`, but no later than with the next call of any of these.
+  void submit(std::function<void()> job, std::chrono::milliseconds patience = {});
+  void begin();   // what waits
   void finish();  // until no job is left
 
  private:
@@ -30,6 +33,7 @@ class Background {
   std::condition_variable changed_;
   size_t most_waiting_;
   std::deque<std::function<void()>> waiting_;
+  std::chrono::steady_clock::time_point begin_at_{};  // the next job; long ago: now
   bool busy_ = false, ending_ = false;
   std::exception_ptr error_;
   std::thread thread_;  // last: it uses the rest

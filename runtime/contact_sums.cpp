@@ -1,8 +1,8 @@
 #include "runtime/contact_sums.h"
 
+#include <algorithm>
 #include <numbers>
-
-#include "kernels/parallel.h"
+#include <vector>
 
 namespace scree {
 
@@ -25,28 +25,32 @@ double inverse_volume(double radius) { return 3 / (4 * std::numbers::pi * radius
 
 }  // namespace
 
-ContactSums contact_sums(const Engine& engine) {
-  if (!engine.knows_contacts()) return {};
-  const size_t n = engine.count();
-  std::vector<double> radii(n);
-  parallel_for_each(n, [&](size_t k) { radii[k] = engine.particle(k).radius; });
-  ContactSums sums{std::vector<Vec3>(n, Vec3{0, 0, 0}), std::vector<uint16_t>(n), std::vector<uint16_t>(n),
-                   std::vector<Stress>(n)};
-  // From a particle the point lies along the normal, whatever its coordinates: a periodic pair's are those beside i.
-  const auto add = [&](size_t k, double inside, const Vec3& towards, const Vec3& force) {
-    sums.force[k] += force;
-    subtract_product(sums.stress[k], (radii[k] - inside) * towards, force);
-  };
-  engine.visit_contacts_by_particles([&](size_t first, size_t last, const ContactState& k) {
-    const double inside = k.with_solid ? k.overlap : 0.5 * k.overlap;  // how deep the point lies
-    add(k.i, inside, -k.normal, k.force);
-    ++(k.with_solid ? sums.wall_contacts : sums.coordination)[k.i];
-    if (k.with_solid || k.j < first || k.j >= last) return;
-    add(k.j, inside, k.normal, -k.force);
-    ++sums.coordination[k.j];
-  });
-  parallel_for_each(n, [&](size_t k) {
-    for (float& s : sums.stress[k]) s *= static_cast<float>(inverse_volume(radii[k]));
+Array<ContactSum> contact_sums(const Engine& engine) {
+  Array<ContactSum> sums;
+  if (!engine.knows_contacts()) return sums;
+  sums.allocate(engine.count());
+  engine.visit_contacts_by_particles([&](size_t first, size_t last, const Engine::EachContact& each) {
+    std::fill_n(sums.data() + first, last - first, ContactSum{});
+    std::vector<double> radii;
+    radii.reserve(last - first);
+    for (size_t k = first; k < last; ++k) radii.push_back(engine.particle(k).radius);
+    // The point lies along the normal, whatever its coordinates: a periodic pair's are those beside i. `inside`: how
+    // deep it lies.
+    const auto add = [&](size_t k, double inside, const Vec3& towards, const Vec3& force) -> ContactSum& {
+      sums[k].force += force;
+      subtract_product(sums[k].stress, (radii[k - first] - inside) * towards, force);
+      return sums[k];
+    };
+    each([&](const ContactState& k) {
+      if (k.with_solid) {
+        ++add(k.i, k.overlap, -k.normal, k.force).wall_contacts;
+        return;
+      }
+      ++add(k.i, 0.5 * k.overlap, -k.normal, k.force).coordination;
+      if (k.j >= first && k.j < last) ++add(k.j, 0.5 * k.overlap, k.normal, -k.force).coordination;
+    });
+    for (size_t k = first; k < last; ++k)
+      for (float& s : sums[k].stress) s *= static_cast<float>(inverse_volume(radii[k - first]));
   });
   return sums;
 }

@@ -3,8 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
+#include "kernels/array.h"
 #include "runtime/engine.h"
 
 namespace scree {
@@ -17,13 +17,13 @@ namespace scree {
 //                  point, sym(A) = (A + A^T) / 2, which leaves out the contacts' torque. Compression is positive:
 //                  p = (s_xx + s_yy + s_zz) / 3. A packing of solid fraction phi bears phi times its mean.
 // Source of the stress: Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48 (1981) 339, for one particle.
-struct ContactSums {
-  std::vector<Vec3> force;
-  std::vector<uint16_t> coordination, wall_contacts;
-  std::vector<std::array<float, 6>> stress;  // xx, yy, zz, xy, yz, xz
+struct ContactSum {
+  Vec3 force{0, 0, 0};
+  std::array<float, 6> stress{};  // xx, yy, zz, xy, yz, xz
+  uint16_t coordination = 0, wall_contacts = 0;
 };
 
 // In the order of Engine::particles(). Empty while the engine does not know its contacts.
-ContactSums contact_sums(const Engine& engine);
+Array<ContactSum> contact_sums(const Engine& engine);
 
 }  // namespace scree

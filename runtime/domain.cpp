@@ -333,11 +333,12 @@ double Domain<Real>::elastic_energy() const {
 }
 
 template <class Real>
-void Domain<Real>::visit_contacts_by_particles(const SeeContactOf& see) const {
+void Domain<Real>::visit_contacts_by_particles(const SeeContactsOf& see) const {
   if (!lists_valid_) return;
   parallel_for(contacts_.size(), [&](size_t k) {
-    const size_t first = chunk_begin(k), last = chunk_end(k);
-    visit_contacts_of(k, Contacts::all, Across::from_each, [&](const ContactState& c) { see(first, last, c); });
+    see(chunk_begin(k), chunk_end(k), [&](const std::function<void(const ContactState&)>& one) {
+      visit_contacts_of(k, Contacts::all, Across::from_each, one);
+    });
   });
 }
 

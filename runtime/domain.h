@@ -48,7 +48,7 @@ class Domain final : public Engine {
   std::vector<ContactState> contacts(Contacts which) const override;
   void visit_contacts(const SeeContacts& see, Contacts which) const override;
   ParticleState particle(size_t k) const override { return state(k); }
-  void visit_contacts_by_particles(const SeeContactOf& see) const override;
+  void visit_contacts_by_particles(const SeeContactsOf& see) const override;
   bool knows_contacts() const override { return lists_valid_; }
   double elastic_energy() const override;
   const std::vector<Insertion>& insertions() const override { return insertions_; }

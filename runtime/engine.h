@@ -177,10 +177,12 @@ class Engine {
   // The same list in pieces, so that not all of it is in memory at once (128 B each, some three a particle).
   using SeeContacts = std::function<void(std::span<const ContactState>)>;
   virtual void visit_contacts(const SeeContacts& see, Contacts which = Contacts::all) const = 0;
-  // For sums by particle, on several threads at once: all contacts of particles first..last - 1, in the same pieces and
-  // order for any number of threads. A contact with a particle of another piece is i's here, and comes there again.
-  using SeeContactOf = std::function<void(size_t first, size_t last, const ContactState&)>;
-  virtual void visit_contacts_by_particles(const SeeContactOf& see) const = 0;
+  // For sums by particle, on several threads at once: each() goes through all contacts of particles first..last - 1.
+  // Every particle is in one such piece; pieces and order are the same for any number of threads. A contact with a
+  // particle of another piece is i's here, and comes there again.
+  using EachContact = std::function<void(const std::function<void(const ContactState&)>& see)>;
+  using SeeContactsOf = std::function<void(size_t first, size_t last, const EachContact& each)>;
+  virtual void visit_contacts_by_particles(const SeeContactsOf& see) const = 0;
 
   virtual const std::vector<Insertion>& insertions() const = 0;  // ascending
 };

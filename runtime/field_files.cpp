@@ -1,5 +1,6 @@
 #include "runtime/field_files.h"
 
+#include <chrono>
 #include <memory>
 #include <utility>
 
@@ -11,7 +12,11 @@ namespace scree {
 
 namespace {
 
-constexpr size_t kManyParticles = 4'000'000;
+constexpr size_t kFewParticles = 200'000, kManyParticles = 4'000'000;
+
+// A small frame waits for the next one's packing, or so long. Between two steps its writer would take a core from a
+// thread of a loop, and all others would wait for that one; packing has pieces enough to be taken over.
+constexpr std::chrono::milliseconds kPatience{500};
 
 }  // namespace
 
@@ -53,12 +58,18 @@ void FieldFiles::look(const RunView& run) {
     newest_.solid_primitives = run.solid.primitives.size();
   }
   if (has_frame_of_now(engine)) return;
-  background_.finish();  // one frame in memory at a time
+  // Of few particles the frame before is written meanwhile; of many one frame at a time is in memory.
+  const bool few = engine.count() < kFewParticles;
+  few ? background_.begin() : background_.finish();
   // Packed here, on all threads: beside the run, one thread of the loops would lose its core to it, and all wait.
   std::vector<PackedArray> frame = packed_particles(run.c, engine, settings.write);
-  particles_.write(step, engine.time(), [frame = std::move(frame)](VtkHdfFile& file) {
-    for (const PackedArray& array : frame) file.array(array);
-  });
+  const auto patience = few ? kPatience : std::chrono::milliseconds{0};
+  particles_.write(
+      step, engine.time(),
+      [frame = std::move(frame)](VtkHdfFile& file) {
+        for (const PackedArray& array : frame) file.array(array);
+      },
+      patience);
   newest_.inserted = engine.counters().inserted, newest_.contacts_known = engine.knows_contacts();
   // A picture of this moment may come next: of ten million particles one of the two is enough to hold.
   if (engine.count() >= kManyParticles) background_.finish();

@@ -22,6 +22,9 @@ namespace {
 constexpr std::chrono::duration<double> kSeriesInterval{1.0};  // s
 constexpr double kSeriesTimes = 100;
 
+// Each forcing of a file to the disk takes a journal's turn; a checkpoint that knows the frames forces what is left.
+constexpr uint64_t kForceBytes = 64 << 20;
+
 }  // namespace
 
 fs::path FrameFiles::path_of(const Frame& frame) const {
@@ -43,13 +46,13 @@ void FrameFiles::prepare() {
   if (!written_.empty()) write_series();
 }
 
-void FrameFiles::write(uint64_t step, double time, Fill fill) {
+void FrameFiles::write(uint64_t step, double time, Fill fill, std::chrono::milliseconds patience) {
   prepare();
   make_folder(folder_);
   if (!frames_.empty() && frames_.back().step == step) frames_.pop_back();
   const Frame frame = frames_.emplace_back(Frame{step, time});
   settled_ = false;
-  background_->submit([this, frame, fill = std::move(fill)] { write_now(frame, fill); });
+  background_->submit([this, frame, fill = std::move(fill)] { write_now(frame, fill); }, patience);
 }
 
 void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
@@ -61,12 +64,19 @@ void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
     file.array("FieldData/step", std::span<const int64_t>(&step, 1));
     fill(file);
   });
-  sync_file(path);  // here, where nobody waits for the disk
   std::error_code error;
   if (const uintmax_t size = fs::file_size(path, error); !error) bytes_ += size;
+  unforced_.push_back(path);
+  if (bytes_ - forced_bytes_ >= kForceBytes) force();  // here, where nobody waits for the disk
   if (!written_.empty() && written_.back().step == frame.step) written_.pop_back();
   written_.push_back(frame);
   if (std::chrono::steady_clock::now() >= series_due_) write_series();
+}
+
+void FrameFiles::force() {
+  for (const fs::path& path : std::exchange(unforced_, {}))
+    if (fs::exists(path)) sync_file(path);  // it may have been taken away since
+  forced_bytes_ = bytes_;
 }
 
 void FrameFiles::write_series() {
@@ -86,6 +96,7 @@ void FrameFiles::write_series() {
 void FrameFiles::settle() {
   background_->finish();
   if (settled_) return;
+  force();
   if (!written_.empty()) write_series();
   sync_folder(folder_);
   settled_ = true;

@@ -30,8 +30,9 @@ class FrameFiles {
       : folder_(folder), stem_(stem), type_(type), background_(&background) {}
 
   // Writes the frame of this step on the background thread, once there is room in its queue; one of the same step that
-  // is there already is replaced. Throws RunError for this or an earlier frame that could not be written.
-  void write(uint64_t step, double time, Fill fill);
+  // is there already is replaced. `patience`: Background::submit()'s. Throws RunError for this or an earlier frame that
+  // could not be written.
+  void write(uint64_t step, double time, Fill fill, std::chrono::milliseconds patience = {});
 
   // Waits until all is written and on the disk. Throws RunError.
   void settle();
@@ -48,6 +49,7 @@ class FrameFiles {
  private:
   std::filesystem::path path_of(const Frame& frame) const;
   void write_now(const Frame& frame, const Fill& fill);
+  void force();  // what was written to the disk
   void write_series();
 
   std::filesystem::path folder_;
@@ -61,7 +63,8 @@ class FrameFiles {
   // The background thread's:
   std::vector<Frame> written_;
   std::chrono::steady_clock::time_point series_due_;  // at once
-  uint64_t bytes_ = 0;
+  std::vector<std::filesystem::path> unforced_;       // written, perhaps not on the disk yet
+  uint64_t bytes_ = 0, forced_bytes_ = 0;
   double seconds_ = 0;
 };
 

@@ -23,7 +23,7 @@ double component(const Vec3& v, uint64_t i) { return i == 0 ? v.x : i == 1 ? v.y
 // What the rows are made of, but for the particles: those come some at a time.
 struct Source {
   bool contacts_known = false;
-  ContactSums sums;  // empty: unknown, or no field asks for it
+  Array<ContactSum> sums;  // empty: unknown, or no field asks for it
   double time = 0, dt = 0;
   const std::vector<Insertion>& insertions;
 
@@ -59,11 +59,11 @@ void fill_of_particles(Column& c, const Rows& rows, const Get& get) {
   fill<T>(c, rows, [&](size_t k, uint64_t i) { return get(rows.particles[k], i); });
 }
 
-// get(sums, particle's row, component)
+// get(the particle's sums, component)
 template <class T, class Get>
 void fill_of_contacts(Column& c, const Rows& rows, T unknown, const Get& get) {
   fill<T>(c, rows, [&](size_t k, uint64_t i) {
-    return rows.of.contacts_known ? static_cast<T>(get(rows.of.sums, rows.first + k, i)) : unknown;
+    return rows.of.contacts_known ? static_cast<T>(get(rows.of.sums[rows.first + k], i)) : unknown;
   });
 }
 
@@ -93,24 +93,20 @@ const std::array kFields = {
           }},
     Field{"force", 3, true, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_contacts(c, rows, kUnknown, [](const ContactSums& sums, size_t row, uint64_t i) {
-              return component(sums.force[row], i);
-            });
+            fill_of_contacts(c, rows, kUnknown,
+                             [](const ContactSum& sum, uint64_t i) { return component(sum.force, i); });
           }},
     Field{"coordination", 1, true, true, kCount,
           [](Column& c, const Rows& rows) {
-            fill_of_contacts(c, rows, kUnknownCount,
-                             [](const ContactSums& sums, size_t row, uint64_t) { return sums.coordination[row]; });
+            fill_of_contacts(c, rows, kUnknownCount, [](const ContactSum& sum, uint64_t) { return sum.coordination; });
           }},
     Field{"wall_contacts", 1, true, true, kCount,
           [](Column& c, const Rows& rows) {
-            fill_of_contacts(c, rows, kUnknownCount,
-                             [](const ContactSums& sums, size_t row, uint64_t) { return sums.wall_contacts[row]; });
+            fill_of_contacts(c, rows, kUnknownCount, [](const ContactSum& sum, uint64_t) { return sum.wall_contacts; });
           }},
     Field{"contact_stress", 6, true, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_contacts(c, rows, kUnknown,
-                             [](const ContactSums& sums, size_t row, uint64_t i) { return sums.stress[row][i]; });
+            fill_of_contacts(c, rows, kUnknown, [](const ContactSum& sum, uint64_t i) { return sum.stress[i]; });
           }},
     Field{"age", 1, false, true, kReal,
           [](Column& c, const Rows& rows) {
@@ -178,7 +174,7 @@ std::vector<Column> empty_columns(std::span<const Field> fields) {
 void fill_columns(std::span<Column> columns, std::span<const Field> fields, const Engine& engine, const Source& source,
                   size_t begin, size_t end) {
   constexpr size_t kAtOnce = 1024;
-  for (Column& c : columns) c.values.resize((end - begin) * std::max<uint64_t>(c.components, 1) * c.type.size);
+  for (Column& c : columns) c.values.allocate((end - begin) * std::max<uint64_t>(c.components, 1) * c.type.size);
   const bool of_contacts = std::ranges::all_of(fields, &Field::from_contacts);
   parallel_for((end - begin + kAtOnce - 1) / kAtOnce, [&](size_t part) {
     const size_t first = begin + part * kAtOnce, last = std::min(end, first + kAtOnce);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/array.h"
 #include "runtime/case.h"
 #include "runtime/engine.h"
 #include "runtime/vtkhdf_file.h"
@@ -39,8 +40,8 @@ class ParticleSnapshot {
     std::string name;
     ElementType type{};
     uint64_t components = 0;  // 0: a plain list
-    std::vector<char> values;
-    uint64_t size() const { return values.size() / type.size; }
+    Array<char> values;
+    uint64_t size() const { return values.capacity() / type.size; }
   };
   const std::vector<Column>& columns() const { return columns_; }  // the first is Points
   std::vector<Column> take() && { return std::move(columns_); }    // them

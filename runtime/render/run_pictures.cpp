@@ -27,7 +27,7 @@ ParticleFrame empty_frame() {
 // see(number) for each of the column's, one after the other.
 void each_number(const ParticleSnapshot::Column& column, const auto& see) {
   const auto read = [&]<class T>(T) {
-    for (size_t at = 0; at < column.values.size(); at += sizeof(T)) {
+    for (size_t at = 0; at < column.values.capacity(); at += sizeof(T)) {
       T value;
       std::memcpy(&value, &column.values[at], sizeof(T));
       see(value);

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace scree {
@@ -49,13 +51,43 @@ TEST(Background, ThrowsAJobsErrorAtTheNextCallAndDropsTheJobsBehindIt) {
   EXPECT_TRUE(ran_later);
 }
 
+// Long enough to see that a job has not begun, too short to matter to one that waits for hours.
+constexpr std::chrono::milliseconds kAMoment{20};
+
+TEST(Background, LetsAPatientJobWaitUntilItIsToldToBegin) {
+  Background background(1);
+  std::atomic<int> done = 0;
+  for (const bool finish : {false, true}) {
+    done = 0;
+    background.submit([&] { ++done; }, std::chrono::hours{1});
+    std::this_thread::sleep_for(kAMoment);
+    EXPECT_EQ(done, 0);
+    finish ? background.finish() : background.begin();
+    while (done == 0) std::this_thread::yield();
+  }
+  done = 0;
+  background.submit([&] { ++done; }, std::chrono::hours{1});
+  background.submit([&] { ++done; }, std::chrono::hours{1});  // one may wait: the first begins
+  while (done < 1) std::this_thread::yield();
+  std::this_thread::sleep_for(kAMoment);
+  EXPECT_EQ(done, 1);
+}
+
+TEST(Background, BeginsAPatientJobByItselfInTheEnd) {
+  Background background(1);
+  std::atomic<int> done = 0;
+  background.submit([&] { ++done; }, std::chrono::milliseconds{1});
+  while (done == 0) std::this_thread::yield();
+}
+
 TEST(Background, FinishesItsJobsBeforeItGoes) {
   int done = 0;
   {
     Background background(1);
     for (int k = 0; k < 5; ++k) background.submit([&] { ++done; });
+    background.submit([&] { ++done; }, std::chrono::hours{1});
   }
-  EXPECT_EQ(done, 5);
+  EXPECT_EQ(done, 6);
 }
 
 }  // namespace

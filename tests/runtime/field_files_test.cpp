@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <thread>
 
 #include "geometry/closest_point.h"
 #include "runtime/case_error.h"
@@ -99,7 +102,7 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
   EXPECT_NEAR(d.array("field_data", "time").values.at(0), s.engine->time(), 1e-15);
 
   const std::vector<ParticleState> particles = s.engine->particles();
-  const ContactSums sums = contact_sums(*s.engine);
+  const auto sums = contact_sums(*s.engine);
   const auto field = [&](const char* name) { return by_id(d, d.array("point_data", name)); };
   const auto position = by_id(d, d.points), velocity = field("velocity"), spin = field("angular_velocity"),
              force = field("force"), stress = field("contact_stress"), radius = field("radius"), kind = field("kind"),
@@ -116,14 +119,14 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
     expect_vector(position.at(p.id), p.position);
     expect_vector(velocity.at(p.id), p.velocity);
     expect_vector(spin.at(p.id), p.spin);
-    expect_vector(force.at(p.id), sums.force[k]);
+    expect_vector(force.at(p.id), sums[k].force);
     EXPECT_EQ(radius.at(p.id)[0], float(p.radius));
     EXPECT_EQ(kind.at(p.id)[0], p.kind);
-    EXPECT_EQ(coordination.at(p.id)[0], sums.coordination[k]);
-    EXPECT_EQ(walls.at(p.id)[0], sums.wall_contacts[k]);
-    for (int i = 0; i < 6; ++i) EXPECT_EQ(stress.at(p.id)[i], sums.stress[k][i]);
+    EXPECT_EQ(coordination.at(p.id)[0], sums[k].coordination);
+    EXPECT_EQ(walls.at(p.id)[0], sums[k].wall_contacts);
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(stress.at(p.id)[i], sums[k].stress[i]);
     EXPECT_NEAR(age.at(p.id)[0], p.id < 20 ? 0.018 : 0.009, 1e-8);
-    touching += sums.coordination[k] + sums.wall_contacts[k];
+    touching += sums[k].coordination + sums[k].wall_contacts;
   }
   EXPECT_GT(touching, 10);
 }
@@ -257,6 +260,16 @@ TEST(FieldFiles, KeepTheFrameOfAStepThatKnowsItsContacts) {
   EXPECT_EQ(std::ranges::count(coordination, -1), 0);
 }
 
+// Frames and their times, as the list of this ending has them.
+std::vector<std::pair<std::string, double>> listed(const Stand& s, const std::string& ending) {
+  std::vector<std::pair<std::string, double>> frames;
+  std::ifstream file(s.folder_path / "fields" / ("particles" + ending));
+  if (!file) return frames;
+  const nlohmann::json series = nlohmann::json::parse(file);
+  for (const auto& f : series["files"]) frames.emplace_back(f["name"], f["time"]);
+  return frames;
+}
+
 TEST(FieldFiles, AreListedWithTheirTimesUnderBothEndings) {
   Stand s(heap_case());
   FieldFiles fields(s.c, s.folder_path, s.engine->dt());
@@ -269,13 +282,27 @@ TEST(FieldFiles, AreListedWithTheirTimesUnderBothEndings) {
   }
   fields.finish(s.view());
   for (const char* ending : {".vtkhdf.series", ".hdf.series"}) {
-    std::ifstream file(s.folder_path / "fields" / (std::string("particles") + ending));
-    const nlohmann::json series = nlohmann::json::parse(file);
-    std::vector<std::pair<std::string, double>> listed;
-    for (const auto& f : series["files"]) listed.emplace_back(f["name"], f["time"]);
-    EXPECT_EQ(listed, expected) << ending;
+    EXPECT_EQ(listed(s, ending), expected) << ending;
     EXPECT_TRUE(fs::exists(s.folder_path / "fields" / (std::string("solid") + ending)));
   }
+}
+
+TEST(FieldFiles, AreListedWhileTheRunGoesOn) {
+  Stand s(heap_case());
+  FieldFiles fields(s.c, s.folder_path, s.engine->dt());
+  s.engine->insert(heap(s.c));
+  std::vector<std::pair<std::string, double>> looked, known;
+  for (int frame = 0; known.size() < 2 && frame < 1200; ++frame) {  // a minute at most
+    s.engine->step();
+    fields.look(s.view());
+    looked.emplace_back(frame_path(s, "particles").filename().string(), s.engine->time());
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    known = listed(s, ".vtkhdf.series");
+    ASSERT_LE(known.size(), looked.size());
+    EXPECT_TRUE(std::ranges::equal(known, std::span(looked).first(known.size())));
+    for (const auto& [name, time] : known) EXPECT_TRUE(fs::exists(s.folder_path / "fields" / name)) << name;
+  }
+  EXPECT_GE(known.size(), 2u);
 }
 
 TEST(FieldFiles, OnlyNamedFieldsAreWritten) {
@@ -326,7 +353,7 @@ TEST(RunPictures, AreColouredByTheFieldsOfFiles) {
   EXPECT_TRUE(std::isnan(values_of(frame_now(s.c, *s.engine, "coordination"), "coordination").at(0)));
   for (int k = 0; k < 100; ++k) s.engine->step();
   const std::vector<ParticleState> particles = s.engine->particles();
-  const ContactSums sums = contact_sums(*s.engine);
+  const auto sums = contact_sums(*s.engine);
   const auto values = [&](const char* quantity) { return values_of(frame_now(s.c, *s.engine, quantity), quantity); };
   const auto speed = values("speed"), coordination = values("coordination"), walls = values("wall_contacts"),
              kind = values("kind"), age = values("age"), force = values("force_z"), mass = values("mass"),
@@ -335,11 +362,11 @@ TEST(RunPictures, AreColouredByTheFieldsOfFiles) {
   for (size_t k = 0; k < particles.size(); ++k) {
     const ParticleState& p = particles[k];
     EXPECT_NEAR(speed[k], norm(p.velocity), 1e-6 * norm(p.velocity));
-    EXPECT_EQ(coordination[k], sums.coordination[k]);
-    EXPECT_EQ(walls[k], sums.wall_contacts[k]);
+    EXPECT_EQ(coordination[k], sums[k].coordination);
+    EXPECT_EQ(walls[k], sums[k].wall_contacts);
     EXPECT_EQ(kind[k], p.kind);
     EXPECT_NEAR(age[k], 100 * s.engine->dt(), 1e-8);
-    EXPECT_FLOAT_EQ(force[k], sums.force[k].z);
+    EXPECT_FLOAT_EQ(force[k], sums[k].force.z);
     EXPECT_FLOAT_EQ(mass[k], p.mass);
     EXPECT_FLOAT_EQ(diameter[k], 2 * p.radius);
   }
