@@ -1,4 +1,5 @@
-// The contacts that touch now, one by one, with their forces: for averages, pictures and checks, not for the step.
+// The contacts that touch now, with their forces, one by one or summed: for averages, pictures and checks, not for the
+// step.
 //
 // Evaluated by the laws and passes of the step, on the records as they are (positions of now, velocities half a step
 // behind): the forces are those that the next step will apply. Nothing is written.
@@ -32,10 +33,23 @@ template <class Real>
 void visit_touching_solids(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts,
                            const VisitTouching& visit);
 
+// What the contacts in the task's lists come to for each of its particles, added to `rows`: (chunk + 1) rows of
+// kSumRow, of which the last collects what is another chunk's:
+//   0..2    force, N
+//   3..8    xx, yy, zz, xy, yz, xz of the sum over contacts of arm sym(n (x) f), N m: n unit, from the contact's point
+//           to the particle's centre, arm their distance, f the force
+//   9, 10   contacts with particles, with solids
+// The order of additions, and so the bits, are those of every lane width.
+inline constexpr size_t kSumRow = 16;
+template <class Real>
+void sum_touching(const ChunkTask<Real>& task, const ChunkContacts<Real>& contacts, Real* rows);
+
 extern template void visit_touching_pairs(const ChunkTask<float>&, const ChunkContacts<float>&, const VisitTouching&);
 extern template void visit_touching_pairs(const ChunkTask<double>&, const ChunkContacts<double>&, const VisitTouching&);
 extern template void visit_touching_solids(const ChunkTask<float>&, const ChunkContacts<float>&, const VisitTouching&);
 extern template void visit_touching_solids(const ChunkTask<double>&, const ChunkContacts<double>&,
                                            const VisitTouching&);
+extern template void sum_touching(const ChunkTask<float>&, const ChunkContacts<float>&, float*);
+extern template void sum_touching(const ChunkTask<double>&, const ChunkContacts<double>&, double*);
 
 }  // namespace scree

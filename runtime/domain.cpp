@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "kernels/parallel.h"
@@ -295,10 +296,10 @@ std::vector<Engine::TouchingPair> Domain<Real>::touching_pairs() const {
 
 template <class Real>
 template <class See>
-void Domain<Real>::visit_contacts_of(size_t chunk, Contacts which, Across across, const See& see) const {
+void Domain<Real>::visit_contacts_of(size_t chunk, Contacts which, const See& see) const {
   const auto pass_on = [&](const TouchingContact& t) {
     const bool solid = t.skeleton >= 0;
-    if (!solid && across == Across::once && t.j < chunk_begin(chunk)) return;  // the other chunk lists it too
+    if (!solid && t.j < chunk_begin(chunk)) return;  // the other chunk lists it too
     see(ContactState{t.i, solid ? tables_.identity(t.skeleton, t.j) : t.j, solid, t.overlap, t.normal, t.point, t.force,
                      t.slip, t.elastic_energy});
   };
@@ -316,7 +317,7 @@ void Domain<Real>::visit_contacts(const SeeContacts& see, Contacts which) const 
     const size_t last = std::min(first + kAtOnce, contacts_.size());
     parallel_for(last - first, [&](size_t k) {
       found[k].clear();
-      visit_contacts_of(first + k, which, Across::once, [&](const ContactState& c) { found[k].push_back(c); });
+      visit_contacts_of(first + k, which, [&](const ContactState& c) { found[k].push_back(c); });
     });
     for (size_t k = 0; k < last - first; ++k) see(found[k]);
   }
@@ -327,19 +328,38 @@ double Domain<Real>::elastic_energy() const {
   if (!lists_valid_) return 0;
   std::vector<double> of_chunks(contacts_.size());
   parallel_for(contacts_.size(), [&](size_t k) {
-    visit_contacts_of(k, Contacts::all, Across::once, [&](const ContactState& c) { of_chunks[k] += c.elastic_energy; });
+    visit_contacts_of(k, Contacts::all, [&](const ContactState& c) { of_chunks[k] += c.elastic_energy; });
   });
   return std::accumulate(of_chunks.begin(), of_chunks.end(), 0.0);
 }
 
+namespace {
+
+// Of a row of sum_touching().
 template <class Real>
-void Domain<Real>::visit_contacts_by_particles(const SeeContactsOf& see) const {
-  if (!lists_valid_) return;
-  parallel_for(contacts_.size(), [&](size_t k) {
-    see(chunk_begin(k), chunk_end(k), [&](const std::function<void(const ContactState&)>& one) {
-      visit_contacts_of(k, Contacts::all, Across::from_each, one);
-    });
+ContactSum contact_sum_of(const Real* row, double radius) {
+  ContactSum sum;
+  sum.force = {row[0], row[1], row[2]};
+  const double volume = 4.0 / 3 * std::numbers::pi * radius * radius * radius;
+  for (size_t k = 0; k < sum.stress.size(); ++k) sum.stress[k] = static_cast<float>(row[3 + k] / volume);
+  sum.coordination = static_cast<uint16_t>(row[9]), sum.wall_contacts = static_cast<uint16_t>(row[10]);
+  return sum;
+}
+
+}  // namespace
+
+template <class Real>
+Array<ContactSum> Domain<Real>::contact_sums() const {
+  Array<ContactSum> sums;
+  if (!knows_contacts()) return sums;
+  sums.allocate(count_);
+  parallel_for(contacts_.size(), [&](size_t c) {
+    const size_t first = chunk_begin(c), last = chunk_end(c);
+    std::vector<Real> rows(kSumRow * (last - first + 1));
+    sum_touching(chunk_task(c, nullptr), contacts_[c], rows.data());
+    for (size_t k = first; k < last; ++k) sums[k] = contact_sum_of(&rows[kSumRow * (k - first)], now_[k].radius);
   });
+  return sums;
 }
 
 template <class Real>

@@ -48,7 +48,7 @@ class Domain final : public Engine {
   std::vector<ContactState> contacts(Contacts which) const override;
   void visit_contacts(const SeeContacts& see, Contacts which) const override;
   ParticleState particle(size_t k) const override { return state(k); }
-  void visit_contacts_by_particles(const SeeContactsOf& see) const override;
+  Array<ContactSum> contact_sums() const override;
   bool knows_contacts() const override { return lists_valid_; }
   double elastic_energy() const override;
   const std::vector<Insertion>& insertions() const override { return insertions_; }
@@ -78,9 +78,8 @@ class Domain final : public Engine {
   void search_solids();
 
   ChunkTask<Real> chunk_task(size_t c, Real* rows) const;
-  enum class Across { once, from_each };  // pairs of two chunks: by the lower one, or by both
   template <class See>
-  void visit_contacts_of(size_t chunk, Contacts which, Across across, const See& see) const;
+  void visit_contacts_of(size_t chunk, Contacts which, const See& see) const;
   void advance_chunks();
   void add_closing();
   void add_profile(const ChunkOutcome& all);

@@ -5,6 +5,7 @@
 // global, and sums over particles go through sum(), insertion and removal through insert() and the removal rule.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/array.h"
 #include "kernels/step_outcome.h"
 #include "runtime/case.h"
 
@@ -53,6 +55,21 @@ struct ContactState {
   Vec3 force{};             // N, on i; -force on j
   Vec3 slip{};              // m/s, tangential velocity of i relative to j at the contact
   double elastic_energy{};  // J, of the normal spring
+};
+
+// What the contacts of a moment come to for one particle.
+// Of the particle with radius R at x:
+//   force          F = sum f_c over all its contacts, N, without gravity
+//   coordination   particles that touch it
+//   wall_contacts  fibres and wall surfaces that touch it
+//   stress         s = -1/V sum sym((x_c - x) (x) f_c) over all its contacts, Pa; V = 4/3 pi R^3, x_c the contact's
+//                  point, sym(A) = (A + A^T) / 2, which leaves out the contacts' torque. Compression is positive:
+//                  p = (s_xx + s_yy + s_zz) / 3. A packing of solid fraction phi bears phi times its mean.
+// Source of the stress: Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48 (1981) 339, for one particle.
+struct ContactSum {
+  Vec3 force{0, 0, 0};
+  std::array<float, 6> stress{};  // xx, yy, zz, xy, yz, xz
+  uint16_t coordination = 0, wall_contacts = 0;
 };
 
 // Of the smallest radius: a particle that moves further in one step stops the run.
@@ -177,12 +194,9 @@ class Engine {
   // The same list in pieces, so that not all of it is in memory at once (128 B each, some three a particle).
   using SeeContacts = std::function<void(std::span<const ContactState>)>;
   virtual void visit_contacts(const SeeContacts& see, Contacts which = Contacts::all) const = 0;
-  // For sums by particle, on several threads at once: each() goes through all contacts of particles first..last - 1.
-  // Every particle is in one such piece; pieces and order are the same for any number of threads. A contact with a
-  // particle of another piece is i's here, and comes there again.
-  using EachContact = std::function<void(const std::function<void(const ContactState&)>& see)>;
-  using SeeContactsOf = std::function<void(size_t first, size_t last, const EachContact& each)>;
-  virtual void visit_contacts_by_particles(const SeeContactsOf& see) const = 0;
+  // What the same contacts come to for each particle, in storage order; empty while they are not known. The same bits
+  // for any number of threads.
+  virtual Array<ContactSum> contact_sums() const = 0;
 
   virtual const std::vector<Insertion>& insertions() const = 0;  // ascending
 };

@@ -2,7 +2,7 @@
 //
 //   FOLDER/STEM_000000012345.vtkhdf   one a frame, by the step; complete under that name
 //   FOLDER/STEM.vtkhdf.series         the frames with their times (s): what to open in ParaView; while the run goes on
-//                                     a second behind, or what a hundred times its writing takes
+//                                     a second or two behind, or what a hundred times its writing takes
 //   FOLDER/STEM.hdf.series            the same: ParaView 5.11 knows its VTKHDF files by this ending only
 #pragma once
 

@@ -8,7 +8,6 @@
 
 #include "kernels/parallel.h"
 #include "runtime/case_physics.h"
-#include "runtime/contact_sums.h"
 
 namespace scree {
 
@@ -158,7 +157,7 @@ std::vector<Field> fields_of(const Case& c, const std::vector<std::string>& name
 
 Source source_of(const Engine& engine, std::span<const Field> fields) {
   Source source{engine.knows_contacts(), {}, engine.time(), engine.dt(), engine.insertions()};
-  if (std::ranges::any_of(fields, &Field::from_contacts)) source.sums = contact_sums(engine);
+  if (std::ranges::any_of(fields, &Field::from_contacts)) source.sums = engine.contact_sums();
   return source;
 }
 

@@ -28,7 +28,7 @@ std::vector<ParticleFieldForm> particle_field_forms();
 //   id, kind           kinds count in the case's order, from 0
 //   radius             m
 //   velocity           m/s, half a time step behind the positions; angular_velocity rad/s
-//   force, coordination, wall_contacts, contact_stress    as in runtime/contact_sums.h: N, Pa (xx yy zz xy yz xz)
+//   force, coordination, wall_contacts, contact_stress    as in runtime/engine.h, ContactSum: N, Pa (xx yy zz xy yz xz)
 //   age                s since the particle was inserted
 // What comes from contacts is not a number (counts: -1) while the engine does not know its contacts.
 class ParticleSnapshot {

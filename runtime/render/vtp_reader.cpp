@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-struct Array {
+struct DataArray {
   std::string name, type;
   size_t components = 1;
   std::string_view text;  // base64
@@ -30,8 +30,8 @@ class File {
 
   [[noreturn]] void fail(const std::string& problem) const { throw CaseError({path_.string()}, problem); }
 
-  std::vector<Array> arrays() const {
-    std::vector<Array> arrays;
+  std::vector<DataArray> arrays() const {
+    std::vector<DataArray> arrays;
     const std::string_view content(content_);
     for (size_t at = 0; (at = content.find("<DataArray ", at)) != content.npos;) {
       const size_t start = content.find('>', at), end = content.find('<', start);
@@ -48,7 +48,7 @@ class File {
 
   // The values of an array that must hold `count` times its components.
   template <class T>
-  std::vector<T> values(const Array& array, size_t count) const {
+  std::vector<T> values(const DataArray& array, size_t count) const {
     if (array.type == "Float32") return converted<T, float>(array, count);
     if (array.type == "Float64") return converted<T, double>(array, count);
     if (array.type == "Int32") return converted<T, int32_t>(array, count);
@@ -73,7 +73,7 @@ class File {
     return std::stoull(text);
   }
   template <class T, class Stored>
-  std::vector<T> converted(const Array& array, size_t count) const {
+  std::vector<T> converted(const DataArray& array, size_t count) const {
     uint64_t size = 0;
     const size_t wanted = count * array.components * sizeof(Stored);
     const std::optional<std::string> bytes = from_base64(array.text);
@@ -100,7 +100,7 @@ ParticleFrame read_vtp(const std::filesystem::path& path) {
   const File file(path);
   const size_t count = file.points();
   ParticleFrame frame;
-  for (const Array& array : file.arrays()) {
+  for (const DataArray& array : file.arrays()) {
     if (array.name == "Points") {
       const std::vector<double> x = file.values<double>(array, count);
       for (size_t k = 0; k < count; ++k) frame.positions.push_back({x[3 * k], x[3 * k + 1], x[3 * k + 2]});

@@ -1,6 +1,4 @@
 // Force, coordination and stress of particles from their contacts.
-#include "runtime/contact_sums.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +38,7 @@ TEST(ContactSums, OfTwoSpheresPressedTogetherAreHertzsForceOnItsBranch) {
   const std::vector<ParticleState> now = engine->particles();
   const std::vector<ContactState> contacts = engine->contacts();
   ASSERT_EQ(contacts.size(), 1u);
-  const auto sums = contact_sums(*engine);
+  const auto sums = engine->contact_sums();
   const double stiff = 1e8 / (2 * (1 - 0.25 * 0.25)), d = contacts[0].overlap;
   const double hertz = 4.0 / 3 * stiff * std::sqrt(kRadius / 2) * std::pow(d, 1.5);
   for (size_t k = 0; k < 2; ++k) {
@@ -65,7 +63,7 @@ TEST(ContactSums, OfAPairAcrossAPeriodicFaceAreTheSame) {
   engine->step();
   const std::vector<ContactState> contacts = engine->contacts();
   ASSERT_EQ(contacts.size(), 1u);
-  const auto sums = contact_sums(*engine);
+  const auto sums = engine->contact_sums();
   const double expected = norm(contacts[0].force) * (kRadius - 0.5 * contacts[0].overlap) / volume(kRadius);
   for (size_t k = 0; k < 2; ++k) EXPECT_NEAR(sums[k].stress[0], expected, 1e-6 * expected);
 }
@@ -85,7 +83,7 @@ TEST(ContactSums, StressOfARestingColumnCarriesTheWeightAbove) {
     engine->insert(column);
     for (int k = 0; k < 20000; ++k) engine->step();
     std::vector<ParticleState> now = engine->particles();
-    const auto sums = contact_sums(*engine);
+    const auto sums = engine->contact_sums();
     const double weight = now[0].mass * 9.81;
     double total = 0, moment = 0;
     for (size_t k = 0; k < now.size(); ++k) {
@@ -102,6 +100,63 @@ TEST(ContactSums, StressOfARestingColumnCarriesTheWeightAbove) {
   }
 }
 
+// Grains pressed together on a floor, over periodic borders, of one material or two: summed by the list of contacts.
+TEST(ContactSums, AreThoseOfTheContactsOneByOne) {
+  for (const Precision precision : {Precision::reference, Precision::mixed})
+    for (const bool two_materials : {false, true}) {
+      Case c = glass_case(precision);
+      if (two_materials) {
+        add_material(c, {"soft", 2500, 5e7, 0.3});
+        add_kind(c, 1, kRadius);
+        c.pairs.push_back({0, 1, 0.5, 0.2, 0}), c.pairs.push_back({1, 1, 0.6, 0.3, 0});
+      }
+      c.domain = {{0, 0, -0.01}, {0.0199, 0.0199, 0.04}}, c.periodic[0] = c.periodic[1] = true;
+      add_solid(c, floor_at(0, 0.05, 0));
+      std::vector<ParticleState> grains;
+      for (int k = 0; k < 1000; ++k)  // ten by ten, half a per cent nearer than touching; the floor nearer, too
+        grains.push_back(
+            sphere(c, two_materials ? k % 2 : 0,
+                   {0.00199 * (k % 10) + 1e-6 * (k % 7), 0.00199 * (k / 10 % 10), 0.000995 + 0.00199 * (k / 100)},
+                   {0.01 * (k % 3), 0, -0.01}, {1.0 * (k % 5), 2, 3}));
+      const auto engine = make_engine(c);
+      engine->insert(grains);
+      for (int k = 0; k < 3; ++k) engine->step();
+      const std::vector<ParticleState> now = engine->particles();
+      std::vector<ContactSum> expected(now.size());
+      double most_force = 0, most_stress = 0;
+      const auto add = [&](size_t k, const Vec3& arm, const Vec3& f) {  // arm: from the centre to the point
+        const double s = -1 / volume(now[k].radius);
+        const double product[] = {arm.x * f.x,
+                                  arm.y * f.y,
+                                  arm.z * f.z,
+                                  (arm.x * f.y + arm.y * f.x) / 2,
+                                  (arm.y * f.z + arm.z * f.y) / 2,
+                                  (arm.x * f.z + arm.z * f.x) / 2};
+        expected[k].force += f;
+        for (int i = 0; i < 6; ++i) expected[k].stress[i] += static_cast<float>(s * product[i]);
+        most_force = std::max(most_force, norm(f)), most_stress = std::max(most_stress, std::abs(s * product[2]));
+      };
+      for (const ContactState& t : engine->contacts()) {
+        add(t.i, -(now[t.i].radius - (t.with_solid ? 1 : 0.5) * t.overlap) * t.normal, t.force);
+        ++(t.with_solid ? expected[t.i].wall_contacts : expected[t.i].coordination);
+        if (t.with_solid) continue;
+        add(t.j, (now[t.j].radius - 0.5 * t.overlap) * t.normal, -t.force);
+        ++expected[t.j].coordination;
+      }
+      const auto sums = engine->contact_sums();
+      int pairs = 0, walls = 0;
+      for (size_t k = 0; k < now.size(); ++k) {
+        EXPECT_EQ(sums[k].coordination, expected[k].coordination) << k;
+        EXPECT_EQ(sums[k].wall_contacts, expected[k].wall_contacts) << k;
+        EXPECT_LT(norm(sums[k].force - expected[k].force), 1e-6 * most_force) << k;
+        for (int i = 0; i < 6; ++i) EXPECT_NEAR(sums[k].stress[i], expected[k].stress[i], 1e-6 * most_stress) << k;
+        pairs += sums[k].coordination, walls += sums[k].wall_contacts;
+      }
+      EXPECT_GT(pairs, 4000);
+      EXPECT_GE(walls, 100);
+    }
+}
+
 TEST(ContactSums, CoordinationCountsTouchingPairs) {
   Case c = glass_case(Precision::mixed);
   c.time.step = 5e-6, c.pairs[0].sliding_friction = 0.5;
@@ -115,7 +170,7 @@ TEST(ContactSums, CoordinationCountsTouchingPairs) {
   engine->insert(grains);
   for (int k = 0; k < 15000; ++k) engine->step();
   const std::vector<ParticleState> now = engine->particles();
-  const auto sums = contact_sums(*engine);
+  const auto sums = engine->contact_sums();
   std::map<uint64_t, int> expected;
   for (const Engine::TouchingPair& pair : engine->touching_pairs()) ++expected[pair.i], ++expected[pair.j];
   int all = 0;
@@ -137,7 +192,7 @@ TEST(ContactSums, AreTheSameForAnyNumberOfThreads) {
   const int before = thread_count();
   const auto sums = [&](int threads) {
     set_thread_count(threads);
-    return contact_sums(*engine);
+    return engine->contact_sums();
   };
   const auto one = sums(1), three = sums(3);
   set_thread_count(before);

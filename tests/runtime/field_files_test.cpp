@@ -14,7 +14,6 @@
 
 #include "geometry/closest_point.h"
 #include "runtime/case_error.h"
-#include "runtime/contact_sums.h"
 #include "runtime/particle_fields.h"
 #include "runtime/random.h"
 #include "runtime/render/quantity.h"
@@ -102,7 +101,7 @@ TEST_P(FieldFilesIn, HoldWhatTheEngineHas) {
   EXPECT_NEAR(d.array("field_data", "time").values.at(0), s.engine->time(), 1e-15);
 
   const std::vector<ParticleState> particles = s.engine->particles();
-  const auto sums = contact_sums(*s.engine);
+  const auto sums = s.engine->contact_sums();
   const auto field = [&](const char* name) { return by_id(d, d.array("point_data", name)); };
   const auto position = by_id(d, d.points), velocity = field("velocity"), spin = field("angular_velocity"),
              force = field("force"), stress = field("contact_stress"), radius = field("radius"), kind = field("kind"),
@@ -353,7 +352,7 @@ TEST(RunPictures, AreColouredByTheFieldsOfFiles) {
   EXPECT_TRUE(std::isnan(values_of(frame_now(s.c, *s.engine, "coordination"), "coordination").at(0)));
   for (int k = 0; k < 100; ++k) s.engine->step();
   const std::vector<ParticleState> particles = s.engine->particles();
-  const auto sums = contact_sums(*s.engine);
+  const auto sums = s.engine->contact_sums();
   const auto values = [&](const char* quantity) { return values_of(frame_now(s.c, *s.engine, quantity), quantity); };
   const auto speed = values("speed"), coordination = values("coordination"), walls = values("wall_contacts"),
              kind = values("kind"), age = values("age"), force = values("force_z"), mass = values("mass"),
