@@ -28,8 +28,8 @@ DRAIN_STEPS = 1000
 BYTES_OF_10M = 6e9  # that the 10M bed needs at its peak, this program's own copy of the particles included
 
 # Within a round: a ratio's two measurements are close in time.
-ORDER = ["lammps_bed_paper_skin", "lammps_bed", "liggghts_bed_paper_skin", "liggghts_bed", "scree_bed", "scree_bed_1_thread",
-         "scree_polydisperse_bed", "scree_bed_10M", "liggghts_drain", "scree_drain"]
+ORDER = ["lammps_bed_paper_skin", "lammps_bed", "liggghts_bed_paper_skin", "liggghts_bed", "scree_bed", "scree_bed_10M",
+         "scree_bed_1_thread", "scree_polydisperse_bed", "liggghts_drain", "scree_drain"]
 
 # ratio: numerator, denominator
 RATIOS = {
