@@ -128,8 +128,9 @@ struct SumLanes {
   F product[6];  // sym(n (x) f)
 
   SumLanes() = default;
-  SumLanes(const Mask& touching, const Vec<F>& n, const Vec<F>& f)
+  SumLanes(const Mask& touching, const Vec<F>& normal, const Vec<F>& f)
       : one(select(touching, F(1), F(0))), force(select_vec(touching, f, Vec<F>{F(0), F(0), F(0)})) {
+    const Vec<F> n = select_vec(touching, normal, Vec<F>{F(0), F(0), F(0)});  // of padding it may be no number
     const F half(0.5);
     product[0] = n.x * force.x, product[1] = n.y * force.y, product[2] = n.z * force.z;
     product[3] = half * (n.x * force.y + n.y * force.x);

@@ -14,9 +14,8 @@ namespace {
 
 constexpr size_t kFewParticles = 200'000, kManyParticles = 4'000'000;
 
-// A small frame waits for the next one's packing, or so long. Between two steps its writer would take a core from a
-// thread of a loop, and all others would wait for that one; packing has pieces enough to be taken over.
-constexpr std::chrono::milliseconds kPatience{500};
+// Few particles' frame waits for the next one's packing: between two steps its writer would take a core from a thread
+// of a loop, and all others would wait for that one; packing has pieces enough to be taken over.
 
 }  // namespace
 
@@ -24,8 +23,9 @@ bool writes_fields(const FieldSettings& s) {
   return s.moments.interval > 0 || !s.moments.times.empty() || s.moments.stage_ends;
 }
 
-FieldFiles::FieldFiles(const Case& c, const std::filesystem::path& out, double dt)
+FieldFiles::FieldFiles(const Case& c, const std::filesystem::path& out, double dt, std::chrono::milliseconds patience)
     : schedule_(c.output.fields.moments, dt),
+      patience_(patience),
       particles_(out / "fields", "particles", VtkHdfType::unstructured_grid, background_),
       solid_(out / "fields", "solid", VtkHdfType::unstructured_grid, background_) {}
 
@@ -63,7 +63,7 @@ void FieldFiles::look(const RunView& run) {
   few ? background_.begin() : background_.finish();
   // Packed here, on all threads: beside the run, one thread of the loops would lose its core to it, and all wait.
   std::vector<PackedArray> frame = packed_particles(run.c, engine, settings.write);
-  const auto patience = few ? kPatience : std::chrono::milliseconds{0};
+  const auto patience = few ? patience_ : std::chrono::milliseconds{0};
   particles_.write(
       step, engine.time(),
       [frame = std::move(frame)](VtkHdfFile& file) {

@@ -23,7 +23,9 @@ bool writes_fields(const FieldSettings& settings);
 
 class FieldFiles final : public Observer {
  public:
-  FieldFiles(const Case& c, const std::filesystem::path& out, double dt);
+  // `patience`: how long a frame of few particles waits for the next one's packing.
+  FieldFiles(const Case& c, const std::filesystem::path& out, double dt,
+             std::chrono::milliseconds patience = std::chrono::milliseconds{500});
   ~FieldFiles() override;
 
   std::string name() const override { return "fields"; }
@@ -49,6 +51,7 @@ class FieldFiles final : public Observer {
   bool has_frame_of_now(const Engine& engine) const;
 
   Schedule schedule_;
+  std::chrono::milliseconds patience_;
   mutable Background background_;
   mutable FrameFiles particles_, solid_;
   Newest newest_;

@@ -52,7 +52,12 @@ void FrameFiles::write(uint64_t step, double time, Fill fill, std::chrono::milli
   if (!frames_.empty() && frames_.back().step == step) frames_.pop_back();
   const Frame frame = frames_.emplace_back(Frame{step, time});
   settled_ = false;
-  background_->submit([this, frame, fill = std::move(fill)] { write_now(frame, fill); }, patience);
+  try {
+    background_->submit([this, frame, fill = std::move(fill)] { write_now(frame, fill); }, patience);
+  } catch (...) {  // of an earlier frame; this one will not be there either
+    frames_.pop_back();
+    throw;
+  }
 }
 
 void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
@@ -74,8 +79,10 @@ void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
 }
 
 void FrameFiles::force() {
-  for (const fs::path& path : std::exchange(unforced_, {}))
-    if (fs::exists(path)) sync_file(path);  // it may have been taken away since
+  std::error_code error;
+  for (const fs::path& path : unforced_)
+    if (fs::exists(path, error) || error) sync_file(path);  // it may have been taken away since
+  unforced_.clear();
   forced_bytes_ = bytes_;
 }
 

@@ -120,7 +120,8 @@ double memory_needed(const Case& c) {
   const double count = expected_particles(c);
   const double frame = writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0;
   const double picture = c.output.pictures.empty() ? 0 : kPictureBytesPerParticle;
-  const double waiting = frame > 0 && picture > 0 ? kPackedBytesPerParticle : 0;  // a frame that is not written yet
+  // A frame that is not written yet. Of few particles two may wait while a third is made: some 25 MB.
+  const double waiting = frame > 0 && picture > 0 ? kPackedBytesPerParticle : 0;
   double bytes = kFixedBytes + memory_of_particles(c, count) + std::max(frame, picture + waiting) * count +
                  memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
   if (c.output.residence.enabled) bytes += kResidenceBytesPerParticle * count;

@@ -193,5 +193,6 @@ const resetZoom = (sync, one) => {
 
 const rebuildCharts = () => charts.forEach((c) => c.rebuild());
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", rebuildCharts);
+// Folds are printed as they are: what the reader has opened.
 addEventListener("beforeprint", () => { document.documentElement.dataset.theme = "light"; rebuildCharts(); });
 addEventListener("afterprint", () => { delete document.documentElement.dataset.theme; rebuildCharts(); });

@@ -55,8 +55,8 @@ TEST(Background, ThrowsAJobsErrorAtTheNextCallAndDropsTheJobsBehindIt) {
 constexpr std::chrono::milliseconds kAMoment{20};
 
 TEST(Background, LetsAPatientJobWaitUntilItIsToldToBegin) {
-  Background background(1);
   std::atomic<int> done = 0;
+  Background background(1);
   for (const bool finish : {false, true}) {
     done = 0;
     background.submit([&] { ++done; }, std::chrono::hours{1});
@@ -74,8 +74,8 @@ TEST(Background, LetsAPatientJobWaitUntilItIsToldToBegin) {
 }
 
 TEST(Background, BeginsAPatientJobByItselfInTheEnd) {
-  Background background(1);
   std::atomic<int> done = 0;
+  Background background(1);
   background.submit([&] { ++done; }, std::chrono::milliseconds{1});
   while (done == 0) std::this_thread::yield();
 }
