@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <new>
 #include <optional>
 #include <sstream>
 
@@ -148,6 +149,22 @@ void require_memory(const Case& c) {
                  fmt::format("a run of {:.4g} particles and {} fibres and walls needs", expected_particles(c),
                              c.solid.primitives.size()),
                  memory_needed(c));
+}
+
+namespace {
+
+constexpr size_t kStack = 1 << 20;  // bytes: a step's kernel takes 170,000, all else less
+
+[[gnu::noinline]] void touch_stack() {
+  [[maybe_unused]] volatile char stack[kStack];
+  for (size_t k = 0; k < kStack; k += 4096) stack[kStack - 1 - k] = 0;  // downwards, as it grows
+}
+
+}  // namespace
+
+void take_stack() {
+  if (const auto left = left_of_address_space("/"); left && *left < 2 * kStack) throw std::bad_alloc();
+  touch_stack();
 }
 
 }  // namespace scree

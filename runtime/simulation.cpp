@@ -192,6 +192,7 @@ RunResult run_case(const Case& c, const RunOptions& options) {
   };
   std::optional<RunFolder> folder;
   try {
+    take_stack();
     folder.emplace(options.out);
     log = make_log(options.out, !options.resume);
     if (options.threads > 0) set_thread_count(options.threads);

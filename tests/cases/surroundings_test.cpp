@@ -7,15 +7,10 @@
 #include <set>
 
 #include "tests/cases/faults.h"
+#include "tests/shadow_memory.h"
 
 namespace scree {
 namespace {
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SCREE_SHADOW_MEMORY
-#endif
-#endif
 
 // ---- the wall clock
 

@@ -1,8 +1,11 @@
 // Input that is absurd in its size: refused with the place and what is allowed, before it takes memory or time.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <fstream>
+#include <new>
 #include <numbers>
 
 #include "runtime/case_reader.h"
@@ -10,6 +13,7 @@
 #include "runtime/memory.h"
 #include "runtime/simulation.h"
 #include "tests/runtime/case_text.h"
+#include "tests/shadow_memory.h"
 
 namespace scree {
 namespace {
@@ -147,6 +151,28 @@ TEST(Memory, the_limit_of_the_address_space_counts) {
   setrlimit(RLIMIT_AS, &before);
   expect_part(available.limited_by, "ulimit");
   EXPECT_LE(available.bytes, std::ldexp(1.0, 62));
+}
+
+// The kernel's own answer to a stack that cannot grow is a signal.
+TEST(Memory, a_stack_that_cannot_grow_is_memory_that_ran_out) {
+#ifdef SCREE_SHADOW_MEMORY
+  GTEST_SKIP() << "a sanitizer's own memory has no such limit";
+#endif
+  const auto with_room_for = [](rlim_t bytes) {
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + bytes;
+    const rlimit limit{most, most};
+    if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(1);
+    try {
+      take_stack();
+    } catch (const std::bad_alloc&) {
+      _exit(2);
+    }
+    _exit(0);
+  };
+  EXPECT_EXIT(with_room_for(256 << 10), ::testing::ExitedWithCode(2), "");
+  EXPECT_EXIT(with_room_for(16 << 20), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
