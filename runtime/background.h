@@ -22,18 +22,25 @@ class Background {
   // Returns once no more than `most_waiting` jobs wait, so that what they hold stays bounded. The job begins at once,
   // or after `patience`, but no later than with the next call of any of these.
   void submit(std::function<void()> job, std::chrono::milliseconds patience = {});
-  void begin();   // what waits
-  void finish();  // until no job is left
+  void begin();        // what waits
+  void run_waiting();  // on the calling thread, unless the other one is at it
+  void finish();       // until no job is left
+  bool is_this_thread() const { return std::this_thread::get_id() == thread_.get_id(); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  struct Waiting {
+    std::function<void()> job;
+    Clock::time_point begin_at;  // long ago: now
+  };
   void work();
+  void run_next(std::unique_lock<std::mutex>& lock);
   void throw_error();
 
   std::mutex mutex_;
   std::condition_variable changed_;
   size_t most_waiting_;
-  std::deque<std::function<void()>> waiting_;
-  std::chrono::steady_clock::time_point begin_at_{};  // the next job; long ago: now
+  std::deque<Waiting> waiting_;
   bool busy_ = false, ending_ = false;
   std::exception_ptr error_;
   std::thread thread_;  // last: it uses the rest

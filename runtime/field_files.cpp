@@ -14,8 +14,18 @@ namespace {
 
 constexpr size_t kFewParticles = 200'000, kManyParticles = 4'000'000;
 
-// Few particles' frame waits for the next one's packing: between two steps its writer would take a core from a thread
-// of a loop, and all others would wait for that one; packing has pieces enough to be taken over.
+// Few particles' frame is written while the next is packed, by one of the loop's threads: a thread more would take a
+// core from one of them now and then, and all others would wait for what that one has begun.
+std::vector<PackedArray> packed_with_writing(const Case& c, const Engine& engine, Background& writer) {
+  const ParticleSnapshot snapshot(c, engine, c.output.fields.write);
+  return packed_particles(snapshot, [&] { writer.run_waiting(); });
+}
+
+// Of many particles one frame at a time is in memory.
+std::vector<PackedArray> packed_after_writing(const Case& c, const Engine& engine, Background& writer) {
+  writer.finish();
+  return packed_particles(c, engine, c.output.fields.write);
+}
 
 }  // namespace
 
@@ -58,11 +68,9 @@ void FieldFiles::look(const RunView& run) {
     newest_.solid_primitives = run.solid.primitives.size();
   }
   if (has_frame_of_now(engine)) return;
-  // Of few particles the frame before is written meanwhile; of many one frame at a time is in memory.
-  const bool few = engine.count() < kFewParticles;
-  few ? background_.begin() : background_.finish();
   // Packed here, on all threads: beside the run, one thread of the loops would lose its core to it, and all wait.
-  std::vector<PackedArray> frame = packed_particles(run.c, engine, settings.write);
+  const bool few = engine.count() < kFewParticles;
+  std::vector<PackedArray> frame = (few ? packed_with_writing : packed_after_writing)(run.c, engine, background_);
   const auto patience = few ? patience_ : std::chrono::milliseconds{0};
   particles_.write(
       step, engine.time(),

@@ -6,10 +6,11 @@
 //
 // Both lists are there as *.hdf.series, too (runtime/frame_files.h).
 //
-// look() packs the particles on all threads and goes on; a thread beside the run writes them, and the solid: a frame of
-// few particles while the next is packed or half a second later, of more at once. Of those one frame is in memory at a
-// time: if the one before is not written yet, look() waits, and of millions it waits for its own. A frame's making
-// takes kFieldBytesPerParticle, what waits to be written kPackedBytesPerParticle.
+// look() packs the particles on all threads and goes on. A frame of few particles is written while the next is packed,
+// by one of the threads, or half a second later by a thread beside the run; of more at once by that thread, which
+// writes the solid, too. Of those one frame is in memory at a time: if the one before is not written yet, look() waits,
+// and of millions it waits for its own. A frame's making takes kFieldBytesPerParticle, what waits to be written
+// kPackedBytesPerParticle.
 #pragma once
 
 #include "runtime/frame_files.h"

@@ -53,6 +53,12 @@ void FrameFiles::write(uint64_t step, double time, Fill fill, std::chrono::milli
   const Frame frame = frames_.emplace_back(Frame{step, time});
   settled_ = false;
   try {
+    if (behind_) {
+      background_->submit([this] {
+        const Timer timer(seconds_);
+        catch_up();
+      });
+    }
     background_->submit([this, frame, fill = std::move(fill)] { write_now(frame, fill); }, patience);
   } catch (...) {  // of an earlier frame; this one will not be there either
     frames_.pop_back();
@@ -72,10 +78,18 @@ void FrameFiles::write_now(const Frame& frame, const Fill& fill) {
   std::error_code error;
   if (const uintmax_t size = fs::file_size(path, error); !error) bytes_ += size;
   unforced_.push_back(path);
-  if (bytes_ - forced_bytes_ >= kForceBytes) force();  // here, where nobody waits for the disk
   if (!written_.empty() && written_.back().step == frame.step) written_.pop_back();
   written_.push_back(frame);
-  if (std::chrono::steady_clock::now() >= series_due_) write_series();
+  if (background_->is_this_thread()) catch_up();
+  behind_ = force_due() || series_due();
+}
+
+bool FrameFiles::force_due() const { return bytes_ - forced_bytes_ >= kForceBytes; }
+bool FrameFiles::series_due() const { return std::chrono::steady_clock::now() >= series_due_at_; }
+
+void FrameFiles::catch_up() {
+  if (force_due()) force();
+  if (series_due()) write_series();
 }
 
 void FrameFiles::force() {
@@ -96,8 +110,8 @@ void FrameFiles::write_series() {
   for (const char* ending : {".vtkhdf.series", ".hdf.series"})
     write_file(folder_ / (stem_ + ending), series.dump(1) + "\n");
   const auto now = std::chrono::steady_clock::now();
-  series_due_ = now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                          std::max(kSeriesInterval, kSeriesTimes * std::chrono::duration<double>(now - begun)));
+  series_due_at_ = now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                             std::max(kSeriesInterval, kSeriesTimes * std::chrono::duration<double>(now - begun)));
 }
 
 void FrameFiles::settle() {

@@ -6,6 +6,7 @@
 //   FOLDER/STEM.hdf.series            the same: ParaView 5.11 knows its VTKHDF files by this ending only
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -29,9 +30,9 @@ class FrameFiles {
   FrameFiles(const std::filesystem::path& folder, const std::string& stem, VtkHdfType type, Background& background)
       : folder_(folder), stem_(stem), type_(type), background_(&background) {}
 
-  // Writes the frame of this step on the background thread, once there is room in its queue; one of the same step that
-  // is there already is replaced. `patience`: Background::submit()'s. Throws RunError for this or an earlier frame that
-  // could not be written.
+  // Submits the writing of this step's frame; one of the same step that is there already is replaced. `patience`:
+  // Background::submit()'s. Whoever runs the job does not wait for the disk, the background thread may. Throws RunError
+  // for this or an earlier frame that could not be written.
   void write(uint64_t step, double time, Fill fill, std::chrono::milliseconds patience = {});
 
   // Waits until all is written and on the disk. Throws RunError.
@@ -41,7 +42,7 @@ class FrameFiles {
 
   const std::vector<Frame>& frames() const { return frames_; }
   uint64_t bytes() const { return bytes_; }    // written, valid after settle()
-  double seconds() const { return seconds_; }  // of the background thread; the same
+  double seconds() const { return seconds_; }  // of the jobs; the same
 
   void save(StateWriter& out, const std::string& at) const { out.save(at + "/frames", frames_); }
   void load(StateReader& in, const std::string& at) { in.load(at + "/frames", frames_); }
@@ -51,6 +52,9 @@ class FrameFiles {
   void write_now(const Frame& frame, const Fill& fill);
   void force();  // what was written to the disk
   void write_series();
+  void catch_up();  // with what may wait for the disk
+  bool force_due() const;
+  bool series_due() const;
 
   std::filesystem::path folder_;
   std::string stem_;
@@ -60,10 +64,11 @@ class FrameFiles {
   bool settled_ = true;        // the series and the folder are on the disk
   std::vector<Frame> frames_;  // handed over for writing
 
-  // The background thread's:
+  // The jobs':
+  std::atomic<bool> behind_ = false;  // catch_up() is due; the run asks, too
   std::vector<Frame> written_;
-  std::chrono::steady_clock::time_point series_due_;  // at once
-  std::vector<std::filesystem::path> unforced_;       // written, perhaps not on the disk yet
+  std::chrono::steady_clock::time_point series_due_at_;  // at once
+  std::vector<std::filesystem::path> unforced_;          // written, perhaps not on the disk yet
   uint64_t bytes_ = 0, forced_bytes_ = 0;
   double seconds_ = 0;
 };

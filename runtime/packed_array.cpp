@@ -51,7 +51,8 @@ PackedArray packed(const PlainArray& array) {
   return result;
 }
 
-void pack_pieces(std::span<const PlainArray> parts, uint64_t first_piece, std::span<PackedArray* const> to) {
+void pack_pieces(std::span<const PlainArray> parts, uint64_t first_piece, std::span<PackedArray* const> to,
+                 const std::function<void()>& beside) {
   struct Job {
     size_t array;
     uint64_t piece, bytes;
@@ -61,18 +62,20 @@ void pack_pieces(std::span<const PlainArray> parts, uint64_t first_piece, std::s
     for (uint64_t piece = 0; piece < parts[k].pieces(); ++piece)
       jobs.push_back({k, piece, parts[k].piece_rows * parts[k].per_row() * parts[k].type.size});
   std::ranges::stable_sort(jobs, std::greater<>(), &Job::bytes);  // so that no thread is left with a large one
-  parallel_for(jobs.size(), [&](size_t k) {
-    const auto [array, piece, bytes] = jobs[k];
+  const size_t others = beside ? 1 : 0;
+  parallel_for(others + jobs.size(), [&](size_t k) {
+    if (k < others) return beside();
+    const auto [array, piece, bytes] = jobs[k - others];
     to[array]->pieces[first_piece + piece] = packed_piece(parts[array], piece);
   });
 }
 
-std::vector<PackedArray> packed(std::span<const PlainArray> arrays) {
+std::vector<PackedArray> packed(std::span<const PlainArray> arrays, const std::function<void()>& beside) {
   std::vector<PackedArray> result;
   for (const PlainArray& array : arrays) result.push_back(without_pieces(array));
   std::vector<PackedArray*> to;
   for (PackedArray& array : result) to.push_back(&array);
-  pack_pieces(arrays, 0, to);
+  pack_pieces(arrays, 0, to, beside);
   return result;
 }
 

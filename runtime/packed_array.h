@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,12 +40,14 @@ struct PackedArray {
   std::vector<std::vector<unsigned char>> pieces;  // zlib streams (runtime/shuffled_deflate.h)
 };
 
-PackedArray packed(const PlainArray& array);                          // on this thread
-std::vector<PackedArray> packed(std::span<const PlainArray> arrays);  // on all threads; the same bytes
+PackedArray packed(const PlainArray& array);  // on this thread
+// The same bytes, on all threads. `beside`: something else to do, which one of them begins with.
+std::vector<PackedArray> packed(std::span<const PlainArray> arrays, const std::function<void()>& beside = {});
 
 // For arrays of which some pieces are there at a time: one with the array's form, whose pieces are yet to come, and
 // those from `first_piece` on of each of `to`, made of the rows that `parts` holds, on all threads.
 PackedArray without_pieces(const PlainArray& array);
-void pack_pieces(std::span<const PlainArray> parts, uint64_t first_piece, std::span<PackedArray* const> to);
+void pack_pieces(std::span<const PlainArray> parts, uint64_t first_piece, std::span<PackedArray* const> to,
+                 const std::function<void()>& beside = {});
 
 }  // namespace scree

@@ -17,7 +17,10 @@ using Column = ParticleSnapshot::Column;
 
 constexpr double kMostRounding = 1e-4;  // of a radius, of positions in single precision
 
-double component(const Vec3& v, uint64_t i) { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
+template <class T>
+std::array<T, 3> row_of(const Vec3& v) {
+  return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
+}
 
 // What the rows are made of, but for the particles: those come some at a time.
 struct Source {
@@ -40,30 +43,27 @@ struct Rows {
   std::span<const ParticleState> particles;  // none where all columns come from contacts
 };
 
-// get(k, component), for each of the rows.
-template <class T, class Get>
+// get(k) is a row, of each of them.
+template <class Get>
 void fill(Column& c, const Rows& rows, const Get& get) {
-  const uint64_t per_row = std::max<uint64_t>(c.components, 1);
-  char* to = c.values.data() + rows.place * per_row * sizeof(T);
-  for (size_t k = 0; k < rows.count; ++k)
-    for (uint64_t i = 0; i < per_row; ++i, to += sizeof(T)) {
-      const T value = static_cast<T>(get(k, i));
-      std::memcpy(to, &value, sizeof(T));
-    }
+  using Row = decltype(get(size_t{}));
+  char* to = c.values.data() + rows.place * sizeof(Row);
+  for (size_t k = 0; k < rows.count; ++k, to += sizeof(Row)) {
+    const Row row = get(k);
+    std::memcpy(to, &row, sizeof row);
+  }
 }
 
-// get(particle, component)
-template <class T, class Get>
+// get(particle)
+template <class Get>
 void fill_of_particles(Column& c, const Rows& rows, const Get& get) {
-  fill<T>(c, rows, [&](size_t k, uint64_t i) { return get(rows.particles[k], i); });
+  fill(c, rows, [&](size_t k) { return get(rows.particles[k]); });
 }
 
-// get(the particle's sums, component)
-template <class T, class Get>
-void fill_of_contacts(Column& c, const Rows& rows, T unknown, const Get& get) {
-  fill<T>(c, rows, [&](size_t k, uint64_t i) {
-    return rows.of.contacts_known ? static_cast<T>(get(rows.of.sums[rows.first + k], i)) : unknown;
-  });
+// get(the particle's sums)
+template <class Row, class Get>
+void fill_of_contacts(Column& c, const Rows& rows, const Row& unknown, const Get& get) {
+  fill(c, rows, [&](size_t k) -> Row { return rows.of.contacts_known ? get(rows.of.sums[rows.first + k]) : unknown; });
 }
 
 using Fill = void (*)(Column&, const Rows&);
@@ -77,43 +77,45 @@ struct Field {
 };
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr std::array<float, 3> kUnknownVector{kUnknown, kUnknown, kUnknown};
+constexpr std::array<float, 6> kUnknownTensor{kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 constexpr int16_t kUnknownCount = -1;
 constexpr ElementType kReal = element_type<float>(), kCount = element_type<int16_t>();
 
 const std::array kFields = {
     Field{"velocity", 3, false, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_particles<float>(c, rows,
-                                     [](const ParticleState& p, uint64_t i) { return component(p.velocity, i); });
+            fill_of_particles(c, rows, [](const ParticleState& p) { return row_of<float>(p.velocity); });
           }},
     Field{"angular_velocity", 3, false, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_particles<float>(c, rows, [](const ParticleState& p, uint64_t i) { return component(p.spin, i); });
+            fill_of_particles(c, rows, [](const ParticleState& p) { return row_of<float>(p.spin); });
           }},
     Field{"force", 3, true, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_contacts(c, rows, kUnknown,
-                             [](const ContactSum& sum, uint64_t i) { return component(sum.force, i); });
+            fill_of_contacts(c, rows, kUnknownVector, [](const ContactSum& sum) { return row_of<float>(sum.force); });
           }},
     Field{"coordination", 1, true, true, kCount,
           [](Column& c, const Rows& rows) {
-            fill_of_contacts(c, rows, kUnknownCount, [](const ContactSum& sum, uint64_t) { return sum.coordination; });
+            fill_of_contacts(c, rows, kUnknownCount,
+                             [](const ContactSum& sum) { return static_cast<int16_t>(sum.coordination); });
           }},
     Field{"wall_contacts", 1, true, true, kCount,
           [](Column& c, const Rows& rows) {
-            fill_of_contacts(c, rows, kUnknownCount, [](const ContactSum& sum, uint64_t) { return sum.wall_contacts; });
+            fill_of_contacts(c, rows, kUnknownCount,
+                             [](const ContactSum& sum) { return static_cast<int16_t>(sum.wall_contacts); });
           }},
     Field{"contact_stress", 6, true, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_contacts(c, rows, kUnknown, [](const ContactSum& sum, uint64_t i) { return sum.stress[i]; });
+            fill_of_contacts(c, rows, kUnknownTensor, [](const ContactSum& sum) { return sum.stress; });
           }},
     Field{"age", 1, false, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_particles<float>(c, rows, [&](const ParticleState& p, uint64_t) { return rows.of.age(p.id); });
+            fill_of_particles(c, rows, [&](const ParticleState& p) { return static_cast<float>(rows.of.age(p.id)); });
           }},
     Field{"mass", 1, false, false, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_particles<float>(c, rows, [](const ParticleState& p, uint64_t) { return p.mass; });
+            fill_of_particles(c, rows, [](const ParticleState& p) { return static_cast<float>(p.mass); });
           }},
 };
 
@@ -121,22 +123,21 @@ const std::array kFields = {
 template <class Coordinate>
 Field points() {
   return {"Points", 3, false, true, element_type<Coordinate>(), [](Column& c, const Rows& rows) {
-            fill_of_particles<Coordinate>(c, rows,
-                                          [](const ParticleState& p, uint64_t i) { return component(p.position, i); });
+            fill_of_particles(c, rows, [](const ParticleState& p) { return row_of<Coordinate>(p.position); });
           }};
 }
 const std::array kAlways = {
     Field{"id", 1, false, true, element_type<uint32_t>(),
           [](Column& c, const Rows& rows) {
-            fill_of_particles<uint32_t>(c, rows, [](const ParticleState& p, uint64_t) { return p.id; });
+            fill_of_particles(c, rows, [](const ParticleState& p) { return static_cast<uint32_t>(p.id); });
           }},
     Field{"radius", 1, false, true, kReal,
           [](Column& c, const Rows& rows) {
-            fill_of_particles<float>(c, rows, [](const ParticleState& p, uint64_t) { return p.radius; });
+            fill_of_particles(c, rows, [](const ParticleState& p) { return static_cast<float>(p.radius); });
           }},
     Field{"kind", 1, false, true, element_type<uint8_t>(),
           [](Column& c, const Rows& rows) {
-            fill_of_particles<uint8_t>(c, rows, [](const ParticleState& p, uint64_t) { return p.kind; });
+            fill_of_particles(c, rows, [](const ParticleState& p) { return static_cast<uint8_t>(p.kind); });
           }},
 };
 
@@ -224,10 +225,19 @@ std::vector<ParticleFieldForm> particle_field_forms() {
   return forms;
 }
 
-ParticleSnapshot::ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& names) {
+ParticleSnapshot::ParticleSnapshot(const Case& c, const Engine& engine, const std::vector<std::string>& names)
+    : particles_(engine.count()) {
   const std::vector<Field> fields = fields_of(c, names);
   columns_ = empty_columns(fields);
   fill_columns(columns_, fields, engine, source_of(engine, fields), 0, engine.count());
+}
+
+std::vector<PackedArray> packed_particles(const ParticleSnapshot& snapshot, const std::function<void()>& beside) {
+  const VertexCells cells(snapshot.particles());
+  std::vector<PlainArray> arrays = cells.arrays();
+  for (const Column& column : snapshot.columns())
+    arrays.push_back(array_of(column, column.values.data(), snapshot.particles()));
+  return packed(arrays, beside);
 }
 
 std::vector<PackedArray> packed_particles(const Case& c, const Engine& engine, const std::vector<std::string>& names) {

@@ -1,6 +1,7 @@
 // What is said of each particle in a field file, each field in one row of a table.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,15 +44,18 @@ class ParticleSnapshot {
     Array<char> values;
     uint64_t size() const { return values.capacity() / type.size; }
   };
+  size_t particles() const { return particles_; }
   const std::vector<Column>& columns() const { return columns_; }  // the first is Points
   std::vector<Column> take() && { return std::move(columns_); }    // them
 
  private:
+  size_t particles_;
   std::vector<Column> columns_;
 };
 
-// The arrays of a field file of this moment: packed on all threads, some particles after the others, so that what they
-// are packed of is never there for all.
+// The arrays of a field file, packed on all threads. Of a snapshot, in one loop, and something else in it; or of this
+// moment, some particles after the others, so that what they are packed of is never there for all. The same bytes.
+std::vector<PackedArray> packed_particles(const ParticleSnapshot& snapshot, const std::function<void()>& beside = {});
 std::vector<PackedArray> packed_particles(const Case& c, const Engine& engine, const std::vector<std::string>& fields);
 
 }  // namespace scree

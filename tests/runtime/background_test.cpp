@@ -80,6 +80,40 @@ TEST(Background, BeginsAPatientJobByItselfInTheEnd) {
   while (done == 0) std::this_thread::yield();
 }
 
+TEST(Background, LetsTheCallerRunWhatWaits) {
+  Background background(2);
+  background.run_waiting();  // nothing
+  std::vector<bool> beside;
+  const auto note = [&] { beside.push_back(background.is_this_thread()); };
+  background.submit(note, std::chrono::hours{1});
+  background.run_waiting();
+  ASSERT_EQ(beside, std::vector<bool>{false});
+  background.submit(note);
+  background.finish();
+  EXPECT_EQ(beside, (std::vector<bool>{false, true}));
+  background.submit([] { throw std::runtime_error("full"); }, std::chrono::hours{1});
+  EXPECT_NO_THROW(background.run_waiting());
+  EXPECT_THROW(background.finish(), std::runtime_error);
+}
+
+TEST(Background, LeavesAJobToWhoBeganIt) {
+  Background background(1);
+  std::atomic<bool> begun = false, may_end = false;
+  std::atomic<int> done = 0;
+  background.submit([&] {
+    begun = true;
+    while (!may_end) std::this_thread::yield();
+    ++done;
+  });
+  while (!begun) std::this_thread::yield();
+  background.submit([&] { ++done; }, std::chrono::hours{1});
+  background.run_waiting();  // does not wait, either: the jobs' order would not be kept
+  EXPECT_EQ(done, 0);
+  may_end = true;
+  background.finish();
+  EXPECT_EQ(done, 2);
+}
+
 TEST(Background, FinishesItsJobsBeforeItGoes) {
   int done = 0;
   {

@@ -43,7 +43,9 @@ TEST(PackedArrays, HoldTheirNumbersInPiecesOfEqualLengthWhateverTheThreads) {
   const int before = thread_count();
   for (const int threads : {1, 3}) {
     set_thread_count(threads);
-    const std::vector<PackedArray> all = packed(plain);
+    int beside = 0;
+    const std::vector<PackedArray> all = packed(plain, [&] { ++beside; });
+    EXPECT_EQ(beside, 1);
     ASSERT_EQ(all.size(), plain.size());
     EXPECT_EQ(all[0].size, (std::vector<uint64_t>{rows, 3}));
     EXPECT_EQ(all[0].pieces.size(), 3u);
