@@ -21,7 +21,7 @@ void field_copy(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(0)));
   const Case c = drain_case();
   const auto engine = started_engine(c, drain_in_flow(), kWarmUpSteps);
-  for (auto _ : state) packed_particles(c, *engine, particle_field_names());
+  for (auto _ : state) packed_particles(ParticleSnapshot(c, *engine, particle_field_names()));
   set_rate(state, "rows/s", static_cast<double>(engine->count() * state.iterations()));
 }
 
@@ -57,12 +57,12 @@ class Blocks {
     return seconds_of([&] { files_.look(view_); }) + without();
   }
   uint64_t state_hash() const { return engine_->state_hash(); }
-  // Seconds of the run and of the thread beside it, a frame.
+  // Seconds of the run, the writing in it included, and of all writing, a frame.
   std::pair<double, double> parts() {
     files_.finish(view_);
     const nlohmann::json told = files_.summary();
     const double frames = told["frames"];
-    return {told["seconds_in_run"].get<double>() / frames, told["seconds_beside"].get<double>() / frames};
+    return {told["seconds_in_run"].get<double>() / frames, told["seconds_of_writing"].get<double>() / frames};
   }
 
  private:
@@ -97,7 +97,7 @@ void field_frame_in_run(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(0)));
   demo_charged();  // is made the first time it is asked for
   for (auto _ : state) {
-    std::vector<double> cost, plain, in_run, beside;  // s
+    std::vector<double> cost, plain, in_run, writing;  // s
     Hash hash;
     for (int run = 0; run < kRuns; ++run) {
       Blocks blocks;
@@ -106,14 +106,14 @@ void field_frame_in_run(benchmark::State& state) {
         cost.push_back(0.5 * (second + third - first - last)), plain.push_back(0.5 * (first + last));
       }
       hash.add(blocks.state_hash());
-      const auto [run_seconds, beside_seconds] = blocks.parts();
-      in_run.push_back(run_seconds), beside.push_back(beside_seconds);
+      const auto [run_seconds, writing_seconds] = blocks.parts();
+      in_run.push_back(run_seconds), writing.push_back(writing_seconds);
     }
     const double frame = quantile(cost, 0.5), block = quantile(plain, 0.5);
     state.SetIterationTime(frame);
     state.counters["frame_error_ms"] = 1e3 * standard_error(cost);
     state.counters["frame_in_run_ms"] = 1e3 * mean(in_run);
-    state.counters["frame_beside_ms"] = 1e3 * mean(beside);
+    state.counters["frame_writing_ms"] = 1e3 * mean(writing);
     state.counters["block_ms"] = 1e3 * block;
     state.counters["share"] = frame / block;
     state.counters["share_error"] = standard_error(cost) / block;

@@ -29,9 +29,9 @@ void Background::begin() {
   changed_.notify_all();
 }
 
-void Background::run_waiting() {
+void Background::run_patient() {
   std::unique_lock lock(mutex_);
-  while (!busy_ && !waiting_.empty()) run_next(lock);
+  while (!busy_ && !waiting_.empty() && waiting_.front().begin_at > Clock::now()) run_next(lock);
 }
 
 void Background::finish() {

@@ -22,9 +22,10 @@ class Background {
   // Returns once no more than `most_waiting` jobs wait, so that what they hold stays bounded. The job begins at once,
   // or after `patience`, but no later than with the next call of any of these.
   void submit(std::function<void()> job, std::chrono::milliseconds patience = {});
-  void begin();        // what waits
-  void run_waiting();  // on the calling thread, unless the other one is at it
-  void finish();       // until no job is left
+  void begin();  // what waits
+  void
+  run_patient();  // on the calling thread: the next ones that still have patience, unless the other thread is at one
+  void finish();  // until no job is left
   bool is_this_thread() const { return std::this_thread::get_id() == thread_.get_id(); }
 
  private:

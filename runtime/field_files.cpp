@@ -18,7 +18,7 @@ constexpr size_t kFewParticles = 200'000, kManyParticles = 4'000'000;
 // core from one of them now and then, and all others would wait for what that one has begun.
 std::vector<PackedArray> packed_with_writing(const Case& c, const Engine& engine, Background& writer) {
   const ParticleSnapshot snapshot(c, engine, c.output.fields.write);
-  return packed_particles(snapshot, [&] { writer.run_waiting(); });
+  return packed_particles(snapshot, [&] { writer.run_patient(); });
 }
 
 // Of many particles one frame at a time is in memory.
@@ -104,7 +104,7 @@ nlohmann::json FieldFiles::summary() const {
   return {{"frames", particles_.frames().size()},
           {"bytes_written", particles_.bytes() + solid_.bytes()},
           {"seconds_in_run", seconds_},
-          {"seconds_beside", particles_.seconds() + solid_.seconds()}};
+          {"seconds_of_writing", particles_.seconds() + solid_.seconds()}};
 }
 
 }  // namespace scree

@@ -9,8 +9,8 @@
 // look() packs the particles on all threads and goes on. A frame of few particles is written while the next is packed,
 // by one of the threads, or half a second later by a thread beside the run; of more at once by that thread, which
 // writes the solid, too. Of those one frame is in memory at a time: if the one before is not written yet, look() waits,
-// and of millions it waits for its own. A frame's making takes kFieldBytesPerParticle, what waits to be written
-// kPackedBytesPerParticle.
+// and of millions it waits for its own. Its making takes kFieldBytesPerParticle, what waits to be written
+// kPackedBytesPerParticle; of few particles all columns are there at once, and two frames may wait.
 #pragma once
 
 #include "runtime/frame_files.h"

@@ -53,7 +53,7 @@ void FrameFiles::write(uint64_t step, double time, Fill fill, std::chrono::milli
   const Frame frame = frames_.emplace_back(Frame{step, time});
   settled_ = false;
   try {
-    if (behind_) {
+    if (behind_.exchange(false)) {
       background_->submit([this] {
         const Timer timer(seconds_);
         catch_up();

@@ -31,8 +31,8 @@ class FrameFiles {
       : folder_(folder), stem_(stem), type_(type), background_(&background) {}
 
   // Submits the writing of this step's frame; one of the same step that is there already is replaced. `patience`:
-  // Background::submit()'s. Whoever runs the job does not wait for the disk, the background thread may. Throws RunError
-  // for this or an earlier frame that could not be written.
+  // Background::submit()'s. Whoever runs the job forces nothing to the disk; the background thread does, now and then.
+  // Throws RunError for this or an earlier frame that could not be written.
   void write(uint64_t step, double time, Fill fill, std::chrono::milliseconds patience = {});
 
   // Waits until all is written and on the disk. Throws RunError.
@@ -52,7 +52,7 @@ class FrameFiles {
   void write_now(const Frame& frame, const Fill& fill);
   void force();  // what was written to the disk
   void write_series();
-  void catch_up();  // with what may wait for the disk
+  void catch_up();  // with what is due of these two
   bool force_due() const;
   bool series_due() const;
 

@@ -121,7 +121,7 @@ double memory_needed(const Case& c) {
   const double count = expected_particles(c);
   const double frame = writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0;
   const double picture = c.output.pictures.empty() ? 0 : kPictureBytesPerParticle;
-  // A frame that is not written yet. Of few particles two may wait while a third is made: some 25 MB.
+  // A frame that is not written yet. Of few particles two may wait while a third is made of all its columns: some 65 MB at most.
   const double waiting = frame > 0 && picture > 0 ? kPackedBytesPerParticle : 0;
   double bytes = kFixedBytes + memory_of_particles(c, count) + std::max(frame, picture + waiting) * count +
                  memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
@@ -153,7 +153,7 @@ void require_memory(const Case& c) {
 
 namespace {
 
-constexpr size_t kStack = 1 << 20;  // bytes: a step's kernel takes 170,000, all else less
+constexpr size_t kStack = 512 << 10;  // bytes: a step's kernel takes 170,000, all else less
 
 [[gnu::noinline]] void touch_stack() {
   [[maybe_unused]] volatile char stack[kStack];
@@ -163,6 +163,8 @@ constexpr size_t kStack = 1 << 20;  // bytes: a step's kernel takes 170,000, all
 }  // namespace
 
 void take_stack() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < 2 * kStack) return;  // `ulimit -s`: it has to do
   if (const auto left = left_of_address_space("/"); left && *left < 2 * kStack) throw std::bad_alloc();
   touch_stack();
 }

@@ -29,8 +29,8 @@ std::string bytes_text(double bytes);  // "12.3 GB"
 void require_memory(const SourcePlace& place, const std::string& what, double bytes);
 void require_memory(const Case& c);
 
-// Makes the calling thread's stack as large as a run needs it. A main thread's stack grows when it is used, and where it
-// cannot (`ulimit -v`) the process is killed; here std::bad_alloc is thrown.
+// Makes the calling thread's stack as large as a run needs it. A main thread's stack grows when it is used, and where
+// it cannot (`ulimit -v`) the process is killed; here std::bad_alloc is thrown.
 void take_stack();
 
 }  // namespace scree

@@ -80,19 +80,19 @@ TEST(Background, BeginsAPatientJobByItselfInTheEnd) {
   while (done == 0) std::this_thread::yield();
 }
 
-TEST(Background, LetsTheCallerRunWhatWaits) {
+TEST(Background, LetsTheCallerRunWhatHasPatience) {
   Background background(2);
-  background.run_waiting();  // nothing
+  background.run_patient();  // nothing
   std::vector<bool> beside;
   const auto note = [&] { beside.push_back(background.is_this_thread()); };
   background.submit(note, std::chrono::hours{1});
-  background.run_waiting();
+  background.run_patient();
   ASSERT_EQ(beside, std::vector<bool>{false});
   background.submit(note);
   background.finish();
   EXPECT_EQ(beside, (std::vector<bool>{false, true}));
   background.submit([] { throw std::runtime_error("full"); }, std::chrono::hours{1});
-  EXPECT_NO_THROW(background.run_waiting());
+  EXPECT_NO_THROW(background.run_patient());
   EXPECT_THROW(background.finish(), std::runtime_error);
 }
 
@@ -107,7 +107,7 @@ TEST(Background, LeavesAJobToWhoBeganIt) {
   });
   while (!begun) std::this_thread::yield();
   background.submit([&] { ++done; }, std::chrono::hours{1});
-  background.run_waiting();  // does not wait, either: the jobs' order would not be kept
+  background.run_patient();  // does not wait, either: the jobs' order would not be kept
   EXPECT_EQ(done, 0);
   may_end = true;
   background.finish();

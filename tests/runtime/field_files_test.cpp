@@ -308,24 +308,32 @@ TEST(FieldFiles, AreWrittenWhileTheNextIsPacked) {
   Stand s(heap_case());
   FieldFiles fields(s.c, s.folder_path, s.engine->dt(), std::chrono::hours{1});
   s.engine->insert(heap(s.c));
-  std::vector<fs::path> paths;
-  for (int frame = 0; frame < 3; ++frame) {
+  int there_at_once = 0;  // not always: the thread beside may be at a list
+  fs::path before;
+  for (int frame = 0; frame < 20; ++frame) {
     s.engine->step();
     fields.look(s.view());
-    for (const fs::path& path : paths)  // by whoever was at it: the thread beside writes lists, too
-      for (int k = 0; !fs::exists(path) && k < 10000; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    for (const fs::path& path : paths) EXPECT_TRUE(fs::exists(path)) << path;
-    paths.push_back(frame_path(s, "particles"));
-    EXPECT_FALSE(fs::exists(paths.back()));
+    if (!before.empty()) there_at_once += fs::exists(before);
+    before = frame_path(s, "particles");
+    EXPECT_FALSE(fs::exists(before));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  EXPECT_GE(there_at_once, 5);
   fields.finish(s.view());
-  EXPECT_TRUE(fs::exists(paths.back()));
+  EXPECT_TRUE(fs::exists(before));
 }
 
 TEST(FieldFiles, OfASnapshotAreThoseOfTheMoment) {
   Stand s(heap_case());
-  s.engine->insert(heap(s.c));
-  for (int k = 0; k < 5; ++k) s.engine->step();
+  std::vector<ParticleState> grains;  // more than are packed at once, if some are packed after the others; they touch
+  const int side = 45, layers = 20;
+  const double spacing = 0.00199;
+  for (int k = 0; k < side * side * layers; ++k)
+    grains.push_back(sphere(
+        s.c, 0,
+        {spacing * (k % side) - 0.045, spacing * (k / side % side) - 0.045, spacing * (k / side / side) + 0.0065}));
+  s.engine->insert(grains);
+  s.engine->step();
   const auto names = particle_field_names();
   const auto of_moment = packed_particles(s.c, *s.engine, names);
   const auto of_snapshot = packed_particles(ParticleSnapshot(s.c, *s.engine, names));
