@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { kPhone, open, startBrowser } from "./browser.mjs";
-import { addPicturesAndFields, discharged, kOpen, kRate, makeKnownSweep, runSmallSweep, scree, temporaryFolder, writeRun } from "./folders.mjs";
+import { addPicturesAndFields, discharged, kEnd, kOpen, kRate, makeKnownSweep, runSmallSweep, scree, temporaryFolder, writeRun } from "./folders.mjs";
 
 let browser, place, full, swept, known;
 
@@ -182,6 +182,18 @@ test("a run that was interrupted, failed or has not ended says so", async () => 
     const { page, troubles, close } = await open(browser, reportOf(folder));
     assert.match(await page.locator(".warning").textContent(), text);
     assert.deepEqual(troubles, []);
+    await close();
+  }
+});
+
+test("a curve that falls short of the outlets' mass is an error, but where the run stopped between two samples", async () => {
+  const mass_discharged_kg = discharged(kEnd) * 1.001;
+  for (const [name, changes, fails, text] of [["short", { mass_discharged_kg }, 1, /Does not hold\. The curve ends at 3\.20000 g, the mass/], ["cut", { mass_discharged_kg, status: "interrupted" }, 0, /The curve ends at 3\.20000 g, its last sample/]]) {
+    const folder = writeRun(join(place.folder, name), { changes });
+    scree("report", folder);
+    const { page, close } = await open(browser, reportOf(folder));
+    assert.match(await page.locator("#checks").textContent(), text);
+    assert.equal(await page.locator("#checks .fails").count(), fails);
     await close();
   }
 });
