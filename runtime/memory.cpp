@@ -121,7 +121,8 @@ double memory_needed(const Case& c) {
   const double count = expected_particles(c);
   const double frame = writes_fields(c.output.fields) ? kFieldBytesPerParticle : 0;
   const double picture = c.output.pictures.empty() ? 0 : kPictureBytesPerParticle;
-  // A frame that is not written yet. Of few particles two may wait while a third is made of all its columns: some 65 MB at most.
+  // A frame that is not written yet. Of few particles two may wait while a third is made of all its columns: at most
+  // some 65 MB.
   const double waiting = frame > 0 && picture > 0 ? kPackedBytesPerParticle : 0;
   double bytes = kFixedBytes + memory_of_particles(c, count) + std::max(frame, picture + waiting) * count +
                  memory_of_primitives(static_cast<double>(c.solid.primitives.size()));
