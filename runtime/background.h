@@ -23,8 +23,8 @@ class Background {
   // or after `patience`, but no later than with the next call of any of these.
   void submit(std::function<void()> job, std::chrono::milliseconds patience = {});
   void begin();  // what waits
-  void
-  run_patient();  // on the calling thread: the next ones that still have patience, unless the other thread is at one
+  // On the calling thread: the next ones that still have patience, unless the other thread is at one.
+  void run_patient();
   void finish();  // until no job is left
   bool is_this_thread() const { return std::this_thread::get_id() == thread_.get_id(); }
 
