@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/cases/case_runs.h"
+#include "tests/length.h"
 
 namespace scree {
 namespace {
@@ -49,12 +50,13 @@ constexpr double kSiloMass = 3e-3, kSettled = 0.08;  // kg, s
 Discharge discharge(const std::string& precision, int seed) {
   const TemporaryFolder folder;
   const auto out = folder.path() / "silo";
-  const RunResult r = run_to(
-      out, "examples/orifice_silo.toml",
-      {"wall.box.radius=0.009", "wall.bottom.outer_radius=0.009", "region.inside.radius=0.0084",
-       "wall.bottom.inner_radius=3.75e-3", "wall.plug.radius=3.75e-3", "stage.fill.mass=3e-3",
-       "time.rayleigh_fraction=0.3", "stage.settle.time=0.08", "stage.drain.discharged_fraction=0.5",
-       "output.interval=1e-3", "checkpoint.keep=0", "contact.precision=" + precision, "seed=" + std::to_string(seed)});
+  const RunResult r =
+      run_to(out, "examples/orifice_silo.toml",
+             {"wall.box.radius=0.009", "wall.bottom.outer_radius=0.009", "region.inside.radius=0.0084",
+              "wall.bottom.inner_radius=3.75e-3", "wall.plug.radius=3.75e-3", "stage.fill.mass=3e-3",
+              "time.rayleigh_fraction=0.3", "stage.settle.time=" + std::to_string(length(kSettled, 0.004)),
+              "stage.drain.discharged_fraction=" + std::to_string(length(0.5, 0.02)), "output.interval=1e-3",
+              "checkpoint.keep=0", "contact.precision=" + precision, "seed=" + std::to_string(seed)});
   EXPECT_EQ(r.status, RunStatus::done) << r.message;
   const Table flow = read_table(out / "mass_flow.csv");
   const std::vector<double> t = flow.column("time_s"), m = flow.column("discharged_kg");
@@ -69,13 +71,14 @@ Discharge discharge(const std::string& precision, int seed) {
 
 TEST(Precisions, discharge_alike) {
   std::vector<double> rate[2], quarter[2];
-  for (int seed = 1; seed <= kSeeds; ++seed)
+  for (int seed = 1; seed <= length(kSeeds, 1); ++seed)
     for (const int p : {0, 1}) {
       const Discharge d = discharge(p == 0 ? "mixed" : "reference", seed);
       rate[p].push_back(d.rate), quarter[p].push_back(d.quarter);
       std::printf("%s, seed %d: %.4f g/s, a quarter after %.4f s\n", p == 0 ? "mixed" : "double", seed, d.rate,
                   d.quarter);
     }
+  if (shortened()) return;  // a quarter is not out yet
   expect_alike("discharge, g/s", rate[0], rate[1]);
   expect_alike("a quarter out, s", quarter[0], quarter[1]);
 }
