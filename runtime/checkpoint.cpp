@@ -108,10 +108,14 @@ Checkpoints::Written Checkpoints::write(uint64_t step, const Save& save) const {
 
 Checkpoints::Written Checkpoints::write_failed(uint64_t step, const Save& save) const {
   const Written written = put("failed_" + step_name(step), save);
-  std::error_code ignored;
-  for (const fs::path& old : files_named(folder_, "failed_", ".h5"))
-    if (old.filename() != written.name) fs::remove(old, ignored);
+  remove_failed(written.name);
   return written;
+}
+
+void Checkpoints::remove_failed(const std::string& but) const {
+  std::error_code ignored;  // one too many does no harm
+  for (const fs::path& old : files_named(folder_, "failed_", ".h5"))
+    if (old.filename() != but) fs::remove(old, ignored);
 }
 
 std::vector<fs::path> Checkpoints::newest_first() const { return files_named(folder_, "step_", ".h5"); }

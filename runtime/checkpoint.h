@@ -57,6 +57,8 @@ class Checkpoints {
   Written write(uint64_t step, const Save& save) const;
   // A state that failed, to be looked at, not gone on from: failed_step_000012345.h5. Only the newest stays.
   Written write_failed(uint64_t step, const Save& save) const;
+  // All of those, or all but one.
+  void remove_failed(const std::string& but = {}) const;
 
   // The good ones (as far as their names say), newest first.
   std::vector<std::filesystem::path> newest_first() const;

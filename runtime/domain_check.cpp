@@ -69,6 +69,7 @@ void Domain<Real>::require_sound_numbers() const {
   require_state(all_finite({max_radius_, min_radius_, max_speed_, max_overlap_, skin_, travel_}) && min_radius_ >= 0 &&
                     max_radius_ >= min_radius_ && max_speed_ >= 0 && max_overlap_ >= 0 && skin_ >= 0 && travel_ >= 0,
                 "a radius, speed, overlap, skin or way is negative or not a number");
+  require_state(next_id_ <= counters_.inserted, "more particles have numbers than went in");
   for (const double period : settings_.period)
     require_state(period == 0 || 2 * max_radius_ < period, "a particle is larger than half a periodic axis");
   require_state(std::ranges::is_sorted(solid_identity_, std::less_equal{}) &&
@@ -84,6 +85,7 @@ void Domain<Real>::require_sound_particles() const {
                   "a particle's position, velocity or mass is not a number");
     require_state(p.radius > 0 && p.radius <= max_radius_ * kRounding && p.inverse_mass > 0 && p.kind() < kinds_,
                   "a particle has an impossible radius, mass or kind");
+    require_state(p.id() < next_id_, "a particle's number is one that none was given");
   }
 }
 

@@ -140,6 +140,13 @@ void run_or_leave_a_checkpoint(Simulation& simulation) {
   }
 }
 
+// What an earlier failure left to be looked at.
+void remove_failure(const Case& c, const std::filesystem::path& out) {
+  std::error_code ignored;
+  std::filesystem::remove(out / "failure.vtp", ignored);
+  Checkpoints(out, c.checkpoint.keep).remove_failed();
+}
+
 // The simulation as the newest usable checkpoint has it; nothing if the run died before its first. A refused
 // checkpoint is named, with the reason, and the one before it is tried.
 std::unique_ptr<Simulation> resumed(const Case& c, const RunOptions& options,
@@ -232,6 +239,7 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     }
     if (c.output.energy_ledger) result.warning = complaint(balance_of(simulation->engine(), c));
     if (!result.warning.empty()) log->warn(result.warning);
+    if (result.status == RunStatus::done) remove_failure(c, options.out);
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
     if (failed_at)
       write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine(), *failed_at,

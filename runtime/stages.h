@@ -71,6 +71,7 @@ class Simulation {
         if (o->schedule().stage_ends()) o->look(view());
       ++state_.stage, state_.begun = false;
       pour_.reset();
+      keep_watch(true);
       write_checkpoint();
     }
     check_count(*engine_);
@@ -176,8 +177,15 @@ class Simulation {
   double stage_time() const { return engine_->time() - record().start; }
   uint64_t stage_stream() const { return state_.stage + 1; }  // of random numbers
 
-  void heed_stop() const {
-    if (options_.stop && *options_.stop) throw Interrupted{};
+  void heed_stop() {
+    if (!options_.stop || !*options_.stop) return;
+    keep_watch(true);
+    throw Interrupted{};
+  }
+
+  // `must`: before a state is kept that the run may go on from.
+  void keep_watch(bool must) {
+    for (const std::string& warning : watch_.look(*engine_, must)) log_->warn(warning);
   }
 
   // Steps until done() says so, which it is asked every few steps. share() is for the progress line. Between two steps,
@@ -187,8 +195,9 @@ class Simulation {
     for (;;) {
       heed_stop();
       if ((engine_->counters().steps - state_.stage_step) % kStepsPerLook == 0) {
-        if (seconds_since(last_checkpoint_) >= case_.checkpoint.interval) write_checkpoint();
-        for (const std::string& warning : watch_.look(*engine_)) log_->warn(warning);  // before a pour's next particles
+        const bool due = seconds_since(last_checkpoint_) >= case_.checkpoint.interval;
+        keep_watch(due);  // before a pour's next particles
+        if (due) write_checkpoint();
         if (done()) return;
         progress_.update(engine_->time(), engine_->count(), static_cast<double>(engine_->counters().particle_steps),
                          share());

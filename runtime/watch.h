@@ -42,9 +42,10 @@ class Watch {
  public:
   explicit Watch(const Case& c);
 
-  // Every few hundred steps it looks; in between it returns at once. Returns what to warn of, each thing once. Throws
-  // RunError when the run is not to be trusted.
-  std::vector<std::string> look(const Engine& engine);
+  // Every few hundred steps it looks; in between it returns at once, unless it `must`: a state that is to be kept is
+  // looked at first, as whoever goes on from it knows of nothing before. Returns what to warn of, each thing once.
+  // Throws RunError when the run is not to be trusted.
+  std::vector<std::string> look(const Engine& engine, bool must = false);
 
   // How near kinetic energy came to what would have stopped the run, since it began or was gone on with.
   uint64_t energy_looks() const { return energy_looks_; }

@@ -42,28 +42,28 @@ TEST_F(Faults, KilledAtAnyMomentTheRunEndsTheSame) {
 // Within each kind of stage that takes steps. On a busy machine a signal may come after the stage's end: it is tried
 // again. Read and open take no time: what is asked for in them is heeded when the next stage begins.
 TEST_F(Faults, AskedToStopInAnyStageTheRunGoesOn) {
-  int signal = SIGTERM;
-  for (const std::string stage : {"fall", "pour", "settle", "drain"}) {
-    SCOPED_TRACE(stage);
-    const fs::path out = path("stopped_in_" + stage);
-    std::string in;
-    for (int attempt = 0; attempt < 20 && in != stage; ++attempt) {
+  for (const int signal : {SIGTERM, SIGINT})
+    for (const std::string stage : {"fall", "pour", "settle", "drain"}) {
+      SCOPED_TRACE(fmt::format("{} in {}", strsignal(signal), stage));
+      const fs::path out = path("stopped_in_" + stage);
+      std::string in;
+      for (int attempt = 0; attempt < 20 && in != stage; ++attempt) {
+        fs::remove_all(out);
+        Process p(run_command(out, {"--checkpoint-every", "1000"}), path("said"));
+        wait_until([&] { return text_of(out / "run.log").find("stage '" + stage + "'") != std::string::npos; });
+        p.send(signal);
+        const int code = p.wait();
+        if (code == 0) continue;
+        ASSERT_EQ(code, 130) << p.said();
+        EXPECT_NE(p.said().find("scree resume"), std::string::npos) << p.said();
+        const nlohmann::json summary = read_summary(out);
+        EXPECT_EQ(summary["status"], "interrupted");
+        in = summary["stages"].back()["name"];
+      }
+      ASSERT_EQ(in, stage) << "no signal came within the stage";
+      expect_resumes(out);
       fs::remove_all(out);
-      Process p(run_command(out, {"--checkpoint-every", "1000"}), path("said"));
-      wait_until([&] { return text_of(out / "run.log").find("stage '" + stage + "'") != std::string::npos; });
-      p.send(signal);
-      const int code = p.wait();
-      if (code == 0) continue;
-      ASSERT_EQ(code, 130) << p.said();
-      EXPECT_NE(p.said().find("scree resume"), std::string::npos) << p.said();
-      const nlohmann::json summary = read_summary(out);
-      EXPECT_EQ(summary["status"], "interrupted");
-      in = summary["stages"].back()["name"];
     }
-    ASSERT_EQ(in, stage) << "no signal came within the stage";
-    expect_resumes(out);
-    signal = signal == SIGTERM ? SIGINT : SIGTERM;
-  }
 }
 
 // A fill takes no step, but millions take minutes: this one of 12,000 a second. It begins anew.

@@ -281,6 +281,20 @@ TEST(Resume, OfARunThatDiedBeforeItsFirstCheckpointBeginsAtTheStart) {
   expect_same_results(out, run.out());
 }
 
+// A jump of energy before a checkpoint is not seen by who goes on from it: each state is looked at before it is kept.
+// Regular looks come ten times as rarely as these checkpoints.
+TEST(Resume, EveryCheckpointIsOfAStateThatWasLookedAt) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.out = folder.path() / "out";
+  const Case c = read_case(write_every_stage(folder.path()), {"checkpoint.interval=1e-9"});
+  ASSERT_EQ(run_case(c, options).status, RunStatus::done);
+  const nlohmann::json s = read_summary(options.out);
+  const int written = s["checkpoints"]["written"], looks = s["energy_watch"]["looks"];
+  ASSERT_GT(written, 50);
+  EXPECT_GT(looks, written / 2);  // those after an insertion have no energy to compare
+}
+
 // What a run that a check stopped leaves to be looked at.
 void expect_failure_files(const fs::path& out) {
   int failed = 0;
@@ -354,8 +368,12 @@ TEST(Failure, ByABadFileOfAReadStageLeavesACheckpointAndASummary) {
   ASSERT_FALSE(r.checkpoint.empty());
   EXPECT_TRUE(run_state_of(r.checkpoint).begun);
   std::ofstream(folder.path() / "beads.csv") << beads;
+  const fs::path failure = options.out / "failure.vtp", failed = options.out / "checkpoints/failed_step_0000000001.h5";
+  std::ofstream(failure) << "of an earlier failure", std::ofstream(failed) << "of an earlier failure";
   EXPECT_EQ(resume_in(options.out, c).status, RunStatus::done);
   expect_same_results(options.out, good.out());
+  EXPECT_FALSE(fs::exists(failure)) << "a run that is done shows a failure";
+  EXPECT_FALSE(fs::exists(failed));
 }
 
 }  // namespace

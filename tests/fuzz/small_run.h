@@ -18,7 +18,6 @@ namespace scree::fuzz {
 inline constexpr const char* kSmallRun = R"(
 base = "common_box.toml"
 time = {rayleigh_fraction = 0.3}
-output = {interval = 1e-4, touch = {cell = 5e-3, around = 4}}
 checkpoint = {interval = 1e-9, keep = 1000}
 neighbour = {skin = 2e-4}
 [domain]
@@ -60,6 +59,23 @@ remove_beyond = 1e-5
 name = "low"
 min = [-10e-3, -10e-3, 0]
 max = [10e-3, 10e-3, 20e-3]
+[output]
+interval = 1e-4
+[output.touch]
+cell = 5e-3
+around = 4
+[output.residence]
+enabled = true
+entry = 15e-3
+exit = 1e-3
+[[output.average]]
+name = "box"
+min = [-10e-3, -10e-3, 0]
+max = [10e-3, 10e-3, 20e-3]
+spacing = 5e-3
+width = 5e-3
+during = "always"
+interval = 1e-3
 [[stage]]
 kind = "fill"
 regions = ["low"]

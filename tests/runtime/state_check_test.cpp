@@ -100,6 +100,8 @@ const std::vector<Edit>& edits() {
       {"infinite speed", false, [](auto& a) { Element<Record>(a, "particles")->vx = INFINITY; }, "not a number"},
       {"no radius", true, [](auto& a) { Element<Record>(a, "particles")->radius = 0; }, "radius"},
       {"another kind", false, [](auto& a) { Element<Record>(a, "particles")->tag |= uint64_t{1} << 56; }, "kind"},
+      {"a number too large", true, [](auto& a) { Element<Record>(a, "particles")->tag += 100000; }, "none was given"},
+      {"fewer went in", true, [](auto& a) { *Element<uint64_t>(a, "counters/inserted") = 5; }, "more particles have"},
       {"weightless", true, [](auto& a) { Element<Record>(a, "particles")->inverse_mass = -1; }, "mass"},
       {"pair of none", true, [](auto& a) { Element<PairBlock<float>>(a, "contacts/blocks")->j[0] = 100000; }, "lists"},
       {"pair beyond the chunk", true, [](auto& a) { Element<PairBlock<float>>(a, "contacts/blocks")->i[1] = 60000; },

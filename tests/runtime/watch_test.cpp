@@ -197,6 +197,15 @@ TEST(Watch, energy_that_comes_from_nowhere_stops_the_run) {
   }
 }
 
+// A checkpoint between two looks: who goes on from it would have nothing to hold the energy against.
+TEST(Watch, a_state_that_is_kept_is_looked_at_first) {
+  const Case c = ceramic_case(kBox);
+  Watch watch(c);
+  watch.look(*two_grains(c, 1e-7, 0, 1));
+  EXPECT_NO_THROW(watch.look(*two_grains(c, 1e-7, 0.01, 2))) << "it is not yet time";
+  EXPECT_THROW(watch.look(*two_grains(c, 1e-7, 0.01, 2), true), RunError);
+}
+
 TEST(Watch, a_step_too_large_for_the_speed_warns_once_and_then_stops) {
   const Case c = ceramic_case(kBox);
   const double hertz = hertz_time(c.materials[0], kRadius, 1);
