@@ -140,11 +140,12 @@ void run_or_leave_a_checkpoint(Simulation& simulation) {
   }
 }
 
-// What an earlier failure left to be looked at.
-void remove_failure(const Case& c, const std::filesystem::path& out) {
+// What a failure before the run was gone on with left to be looked at: of no use once it is done, or failed otherwise.
+void remove_earlier_failure(RunStatus now, const Case& c, const std::filesystem::path& out) {
+  if (now == RunStatus::interrupted) return;
   std::error_code ignored;
   std::filesystem::remove(out / "failure.vtp", ignored);
-  Checkpoints(out, c.checkpoint.keep).remove_failed();
+  if (now == RunStatus::done) Checkpoints(out, c.checkpoint.keep).remove_failed();
 }
 
 // The simulation as the newest usable checkpoint has it; nothing if the run died before its first. A refused
@@ -239,7 +240,7 @@ RunResult run_case(const Case& c, const RunOptions& options) {
     }
     if (c.output.energy_ledger) result.warning = complaint(balance_of(simulation->engine(), c));
     if (!result.warning.empty()) log->warn(result.warning);
-    if (result.status == RunStatus::done) remove_failure(c, options.out);
+    remove_earlier_failure(result.status, c, options.out);
     write_file(options.out / "summary.json", summary_of(c, *simulation, result).dump(2) + "\n");
     if (failed_at)
       write_neighbourhood_vtp(options.out / "failure.vtp", simulation->engine(), *failed_at,

@@ -60,6 +60,7 @@ class Simulation {
   void run() {
     open_tables();
     if (state_.samples.empty()) sample();
+    if (!resumed_from_.empty()) keep_watch(true);  // what the next look is held against
     while (state_.stage < case_.stages.size()) {
       heed_stop();
       const Stage& stage = case_.stages[state_.stage];

@@ -87,19 +87,22 @@ Watch::Watch(const Case& c) : case_(c), budget_(c), wall_speed_(largest_wall_spe
 
 std::vector<std::string> Watch::look(const Engine& engine, bool must) {
   const uint64_t steps = engine.counters().steps;
-  if (steps < next_step_ && !must) return {};
-  next_step_ = steps + kStepsPerLook;
+  const bool regular = steps >= next_step_;
+  if (!regular && !must) return {};
+  if (regular) next_step_ = steps + kStepsPerLook;
   check_count(engine);
   if (engine.count() == 0) return {};
-  check_energy(engine);
+  check_energy(engine, regular);
+  if (!last_->elastic) next_step_ = steps + 1;  // nothing can be held against it: the next look is soon
   std::vector<std::string> warnings = check_step(engine);
   for (std::string& warning : check_spin(engine)) warnings.push_back(std::move(warning));
   return warnings;
 }
 
-void Watch::check_energy(const Engine& engine) {
+void Watch::check_energy(const Engine& engine, bool regular) {
   const EnergyLook now = look_at(engine, last_);
-  const double most = last_ && budget_.compares(*last_, now) ? budget_.most_after(*last_, now) : 0;
+  const bool compares = last_ && budget_.compares(*last_, now);
+  const double most = compares ? budget_.most_after(*last_, now) : 0;
   if (most > 0) ++energy_looks_, largest_share_ = std::max(largest_share_, now.kinetic / most);
   if (most > 0 && now.kinetic > most) {
     const ParticleState p = fastest_of(engine);
@@ -113,7 +116,7 @@ void Watch::check_energy(const Engine& engine) {
             norm(p.velocity), engine.dt()),
         p.position);
   }
-  if (now.elastic || !last_) last_ = now;  // just after an insertion nothing could be held against it
+  if (!last_ || (now.elastic && (regular || !compares))) last_ = now;
 }
 
 // Contacts at the largest speed seen last the shortest. Hertz's time falls with speed^(1/5) only, so this speaks when

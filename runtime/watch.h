@@ -43,8 +43,9 @@ class Watch {
   explicit Watch(const Case& c);
 
   // Every few hundred steps it looks; in between it returns at once, unless it `must`: a state that is to be kept is
-  // looked at first, as whoever goes on from it knows of nothing before. Returns what to warn of, each thing once.
-  // Throws RunError when the run is not to be trusted.
+  // looked at first, as whoever goes on from it knows of nothing before. Such a look is held against the same look
+  // before as the next regular one will be. Returns what to warn of, each thing once. Throws RunError when the run is
+  // not to be trusted.
   std::vector<std::string> look(const Engine& engine, bool must = false);
 
   // How near kinetic energy came to what would have stopped the run, since it began or was gone on with.
@@ -52,7 +53,7 @@ class Watch {
   double largest_energy_share() const { return largest_share_; }
 
  private:
-  void check_energy(const Engine& engine);
+  void check_energy(const Engine& engine, bool regular);
   std::vector<std::string> check_step(const Engine& engine);
   std::vector<std::string> check_spin(const Engine& engine);
 

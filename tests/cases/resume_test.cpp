@@ -282,7 +282,7 @@ TEST(Resume, OfARunThatDiedBeforeItsFirstCheckpointBeginsAtTheStart) {
 }
 
 // A jump of energy before a checkpoint is not seen by who goes on from it: each state is looked at before it is kept.
-// Regular looks come ten times as rarely as these checkpoints.
+// Regular looks come ten times as rarely as these checkpoints, nearly all of which are written within stages.
 TEST(Resume, EveryCheckpointIsOfAStateThatWasLookedAt) {
   const TemporaryFolder folder;
   RunOptions options;
@@ -292,7 +292,7 @@ TEST(Resume, EveryCheckpointIsOfAStateThatWasLookedAt) {
   const nlohmann::json s = read_summary(options.out);
   const int written = s["checkpoints"]["written"], looks = s["energy_watch"]["looks"];
   ASSERT_GT(written, 50);
-  EXPECT_GT(looks, written / 2);  // those after an insertion have no energy to compare
+  EXPECT_GT(looks, written / 2);  // in the read and the pour some have nothing to be held against
 }
 
 // What a run that a check stopped leaves to be looked at.

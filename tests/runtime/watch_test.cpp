@@ -206,6 +206,15 @@ TEST(Watch, a_state_that_is_kept_is_looked_at_first) {
   EXPECT_THROW(watch.look(*two_grains(c, 1e-7, 0.01, 2), true), RunError);
 }
 
+// However many states are kept in between: energy that doubles from one to the next is 500 steps' all the same.
+TEST(Watch, looks_at_kept_states_do_not_widen_the_budget) {
+  const Case c = ceramic_case(kBox);
+  Watch watch(c);
+  watch.look(*two_grains(c, 1e-7, 0.01, 1));
+  EXPECT_NO_THROW(watch.look(*two_grains(c, 1e-7, 0.0135, 51), true)) << "less than twice the energy";
+  EXPECT_THROW(watch.look(*two_grains(c, 1e-7, 0.018, 101), true), RunError) << "more than three times";
+}
+
 TEST(Watch, a_step_too_large_for_the_speed_warns_once_and_then_stops) {
   const Case c = ceramic_case(kBox);
   const double hertz = hertz_time(c.materials[0], kRadius, 1);
@@ -283,7 +292,7 @@ TEST(Watch, a_sound_bed_is_left_alone_to_the_bit) {
     for (int k = 0; k < 3000; ++k) {
       engine->step();
       if (watched) {
-        EXPECT_TRUE(watch.look(*engine).empty());
+        EXPECT_TRUE(watch.look(*engine, true).empty());
       }
     }
     hash[watched] = engine->state_hash();
