@@ -69,7 +69,8 @@ double EnergyBudget::most_after(const EnergyLook& before, const EnergyLook& now)
   const double from_walls = 2 * mass * wall_speed_ * (speed + wall_speed_);
   const double at_rest = 0.5 * mass * kRestSpeed * kRestSpeed;
   const double inserted = 0.5 * came * inserted_speed_ * inserted_speed_;
-  const double without_gravity = before.kinetic + springs_ * *before.elastic + from_walls + inserted + at_rest;
+  const double without_gravity =
+      before.kinetic + springs_ * before.elastic.value_or(0) + from_walls + inserted + at_rest;
   return kMargin * std::pow(std::sqrt(without_gravity) + gravity_ * dt * std::sqrt(0.5 * mass), 2);
 }
 
@@ -93,7 +94,7 @@ std::vector<std::string> Watch::look(const Engine& engine, bool must) {
   check_count(engine);
   if (engine.count() == 0) return {};
   check_energy(engine, regular);
-  if (!last_->elastic) next_step_ = steps + 1;  // nothing can be held against it: the next look is soon
+  if (last_ && !last_->elastic) next_step_ = steps + 1;  // nothing can be held against it: the next look is soon
   std::vector<std::string> warnings = check_step(engine);
   for (std::string& warning : check_spin(engine)) warnings.push_back(std::move(warning));
   return warnings;
@@ -101,8 +102,8 @@ std::vector<std::string> Watch::look(const Engine& engine, bool must) {
 
 void Watch::check_energy(const Engine& engine, bool regular) {
   const EnergyLook now = look_at(engine, last_);
-  const bool compares = last_ && budget_.compares(*last_, now);
-  const double most = compares ? budget_.most_after(*last_, now) : 0;
+  const EnergyLook before = last_.value_or(now);
+  const double most = last_ && budget_.compares(before, now) ? budget_.most_after(before, now) : 0;
   if (most > 0) ++energy_looks_, largest_share_ = std::max(largest_share_, now.kinetic / most);
   if (most > 0 && now.kinetic > most) {
     const ParticleState p = fastest_of(engine);
@@ -112,11 +113,11 @@ void Watch::check_energy(const Engine& engine, bool regular) {
             "gravity, moving walls, elastic contacts and what came in account for {:.4g} J at most; the fastest is "
             "particle "
             "{} at ({:.6g}, {:.6g}, {:.6g}) m with {:.4g} m/s: use a smaller [time] step (now {:.4g} s)",
-            last_->kinetic, last_->time, now.kinetic, now.time, most, p.id, p.position.x, p.position.y, p.position.z,
+            before.kinetic, before.time, now.kinetic, now.time, most, p.id, p.position.x, p.position.y, p.position.z,
             norm(p.velocity), engine.dt()),
         p.position);
   }
-  if (!last_ || (now.elastic && (regular || !compares))) last_ = now;
+  if (!last_ || (now.elastic && (regular || most == 0))) last_ = now;
 }
 
 // Contacts at the largest speed seen last the shortest. Hertz's time falls with speed^(1/5) only, so this speaks when
