@@ -26,7 +26,8 @@ ExposedMesh mesh_of(const TouchSurface& surface) {
         if (surface.states()[cell] == TouchState::hidden) continue;
         int64_t corners[4];
         for (uint32_t n = 0; n < 4; ++n) {  // round the cell
-          const double s = p.length * (row + n / 2) / p.rows, share = double(column + (n == 1 || n == 2)) / p.columns;
+          const uint32_t up = row + n / 2, along = column + (n == 1 || n == 2);
+          const double s = p.length * up / p.rows, share = double(along) / p.columns;
           const Vec3 x = p.at(s, share);
           corners[n] = mesh.grid.add_point(x.x, x.y, x.z);
         }

@@ -161,8 +161,9 @@ void TouchSurface::look_what_is_open(const Case& c) {
   parallel_for(patches_.size(), [&](size_t k) {
     const TouchPatch& p = patches_[k];
     for (size_t cell = 0; cell < p.cells(); ++cell) {
-      const double s = p.length * (static_cast<double>(cell / p.columns) + 0.5) / p.rows;
-      const double share = (static_cast<double>(cell % p.columns) + 0.5) / p.columns;
+      const size_t row = cell / p.columns, column = cell % p.columns;
+      const double s = p.length * (static_cast<double>(row) + 0.5) / p.rows;
+      const double share = (static_cast<double>(column) + 0.5) / p.columns;
       states_[p.first + cell] = around.state_at(p, p.at(s, share), p.outward(share));
     }
   });
